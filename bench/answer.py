@@ -1,11 +1,13 @@
-"""How long a host waits for an answer while a program leaves the link's thread, which ranks below it, nothing.
+"""How long a host waits for an answer while a program uses all the processor time that the link's thread, which has a
+lower rank, would need.
 
-link/answer  microseconds of the robot's time from the interrupt with the last byte of a request until its answer is ready for
-             the line; the most over all requests to all programs. They come at random times, each in two parts, as on a
-             line that takes milliseconds for it.
+link/answer  microseconds of the robot's time from the interrupt with the last byte of a request until its answer is
+             ready for the line; the worst case over all requests to all programs. The requests come at random times,
+             each in two parts, as on a line that takes milliseconds for them.
 
-The programs fill the processor, each in another way, and their steps take up to what a board accepts at most; `rsc check`
-refuses them, so they are uploaded with --anyway. A processor that never rests executes an instruction every 32 ns here.
+The programs fill the processor in different ways; the largest of their steps take as long as a board accepts. `rsc
+check` refuses them, so they are uploaded with --anyway. A processor that never sleeps executes an instruction every 32
+ns here.
 """
 
 import random
@@ -20,7 +22,7 @@ from safety import BYTE, END, ROBOTS_TIME
 import wire
 
 ANSWER = "robosync::update::LineWriter::send("
-US_AN_INSTRUCTION = 32e-3  # as ROBOTS_TIME says
+US_AN_INSTRUCTION = 32e-3  # see ROBOTS_TIME
 REQUESTS = 40
 ROBOT = """{"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 10000]}}}],
  "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "180deg"]}]}"""
@@ -41,12 +43,12 @@ def behaviors(count, times):
     return "".join(f"BEHAVIOR busy{i} PRIORITY {i + 1}{rounds(times)}END\n" for i in range(count))
 
 
-# A step of 1.5 ms each millisecond; of what a board accepts at most; of many threads; and of less than a millisecond.
+# A step of 1.5 ms every millisecond; the longest that a board accepts; many threads; and less than a millisecond.
 PROGRAMS = rounds(900), rounds(1900), behaviors(30, 60), rounds(250)
 
 
 def ask(line, draw):
-    """At a time that nobody knows."""
+    """Asks at an unpredictable time."""
     time.sleep(draw.uniform(0.05, 0.12))
     request = wire.frame("hello", line.introduction())
     cut = draw.randrange(1, len(request))

@@ -1,9 +1,9 @@
-"""scripts/bench: measures every figure there is, and holds it against its bar and its record.
+"""scripts/bench: measures all figures, and compares each with its bar and its recorded value.
 
-Prints a table for people, with --json one object a line for programs, with --markdown the page
-docs/measurements.md. Figures are executed Cortex-M4 instructions (in QEMU, exact), bytes and times.
-Bars are the design's, and stay where they are: a figure that misses its bar is shown as missed. Exit code 1 when a
-figure misses a bar that it met when it was recorded, or a counted figure grew (recorded.py).
+Prints a table; with --json one object a line; with --markdown the page docs/measurements.md. Figures are executed
+Cortex-M4 instructions (in QEMU, exact), bytes and times. Bars come from the design and are not adjusted: a figure that
+misses its bar is shown as missed. Exit code 1 if a figure misses a bar that it met when it was recorded, or a counted
+figure grew (recorded.py).
 """
 
 import argparse
@@ -40,7 +40,7 @@ BY_NAME = {group.__name__.removesuffix("_figures"): group for group in GROUPS}
 
 
 def measure(groups):
-    """Every figure of them as {"name", "value", "unit", "bar"}; what could not be measured raises."""
+    """Yields every figure of the groups as {"name", "value", "unit", "bar"}; raises if one cannot be measured."""
     for group in groups:
         for name, (value, unit) in group().items():
             yield {"name": name, "value": value, "unit": unit, "bar": BARS.get(boards.whose_bar(name))}
@@ -54,21 +54,21 @@ def as_line(figure, grew):
 
 
 def complain(messages):
-    """How many there were."""
+    """Prints the messages to stderr; returns how many there were."""
     messages = list(messages)
     for message in messages:
         print(f"bench: {message}", file=sys.stderr)
     return len(messages)
 
 
-# Of n and 2n in CPU time: what is linear comes near 2, what is quadratic near 4. Other work on the machine
-# moves a ratio by some tenths, so a missed bar is shown, and only what is clearly not linear fails.
+# The ratio of CPU times for 2n and n: near 2 if linear, near 4 if quadratic. Other work on the machine moves it by some
+# tenths, so a missed bar is only shown; a ratio that is clearly not linear fails.
 NOT_LINEAR = 3.0
 
 
 def fails(figure, before):
-    """A bar is missed, and not because of how fast this machine is today: people judge that. `before`: the
-    recorded value, None when there is none."""
+    """True if a bar is missed, unless the speed of this machine may be the reason: that is for people to judge.
+    `before`: the recorded value, or None."""
     if page.verdict(figure) != page.MISSED:
         return False
     if figure["name"].startswith("compile/growth_"):
@@ -79,7 +79,7 @@ def fails(figure, before):
 
 
 def measure_all(groups, show, comparison):
-    """(figures measured, how many of them failed); shows each as it comes."""
+    """Shows each figure as soon as it is measured. Returns (figures, how many of them failed)."""
     found, failed = [], 0
     for figure in measure(groups):
         grew = not comparison.add(figure)

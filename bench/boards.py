@@ -1,14 +1,15 @@
-"""What the shipped firmware takes on each board but the reference one, on which everything else is measured: NAME/….
+"""What the shipped firmware needs on each board except the reference board, on which everything else is measured:
+NAME/….
 
 flash, ram_fixed          as firmware/flash and firmware/ram_fixed
-power_up_to_first_step    from reset until the first step begins of the paper's program, which the board has kept: the
-                          instructions until the kernel's clock begins, each of which takes the time that QEMU gives it, and
-                          then what that clock says, which goes in milliseconds
-reading_to_command…       the three conditions of path.py; the first reading after power-up once
+power_up_to_first_step    from reset until the first step of the paper's program, which the board has kept: the
+                          instructions until the kernel's clock starts, at the time that QEMU takes for each, plus what
+                          that clock then shows, which advances in milliseconds
+reading_to_command…       the three conditions of path.py, with one power-up
 idle_second               as firmware/idle_second
 
-All of it is counted in QEMU, and nothing comes by the clock of this machine (played.py): it is the same in each run. Each board is
-measured by a process of its own, since ROBOSYNC_BOARD says which one that is.
+Everything is counted in QEMU and independent of this machine's clock (played.py), so every run gives the same figures.
+Each board is measured by its own process, because ROBOSYNC_BOARD selects the board.
 """
 
 import functools
@@ -33,9 +34,9 @@ sys.path.append(str(ROOT / "tests/e2e"))
 import wire  # noqa: E402
 from support import wired_as_it_can  # noqa: E402
 
-STEP = "robosync::layers::Mailboxes::take_announced("  # by which each step begins
+STEP = "robosync::layers::Mailboxes::take_announced("  # called at the start of each step
 CLOCK_BEGINS = "robosync::port::start_tick("
-# Whose bar a figure has that has none of its own.
+# The figures of the reference board whose bars apply to figures without their own.
 BARS = {"power_up_to_first_step": "firmware/power_up_to_program", "idle_second": "firmware/idle_second",
         **{name: f"path/{name}" for name in ("reading_to_command", "reading_to_command_busy", "reading_to_command_monitored")}}
 
@@ -51,7 +52,7 @@ def whose_bar(name):
 
 
 def paper_for_this_board(folder):
-    """The paper's program, on pins that the board has."""
+    """Compiles the paper's program for pins that the board has; returns the image."""
     robot = json.loads(PAPER.with_name("robot.json").read_text())
     wired_as_it_can(robot["actuators"])
     config, image = folder / "robot.json", folder / "paper.rsb"
@@ -61,7 +62,7 @@ def paper_for_this_board(folder):
 
 
 def begin_of_monitor():
-    """What `rsc monitor` says to a board."""
+    """What `rsc monitor` sends to a board first."""
     return b"\0" + wire.frame("hello", hello(), 1) + wire.frame("trace_on", wire.pack("TraceOn", on=1), 2)
 
 
@@ -74,7 +75,8 @@ def touch_again_and_again(board):
 
 
 def drive(board):
-    """From power-up to the end of what path.py does with the reference board: gives the time of the first step by the kernel's clock."""
+    """Runs from power-up to the end of what path.py does with the reference board. Returns the time of the first step
+    on the kernel's clock."""
     board.run_to(functions(STEP)[STEP])
     first_step = board.uptime_us()
     board.set_touch(path.LIGHT)
@@ -97,7 +99,7 @@ def time_of_first_step(marks, by_the_clock):
 
 
 def conditions(marks):
-    """The most of each of path.py's three."""
+    """The worst case for each of path.py's three conditions."""
     found = path.ways(marks)
     if len(found) != 1 + 2 * (path.AWAKE + path.CHANGES):
         raise BenchError(f"not every touch led to a command: {found}")

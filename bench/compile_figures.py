@@ -1,7 +1,7 @@
 """What compiling costs on the computer: CPU time of `rsc check`, and how time and memory grow.
 
-CPU time is what the process and the system used for it, the least of several runs, so that other work
-on the machine adds little. Growth is that of 2n against n, without what rsc needs for any program.
+CPU time is that of the process and of the system for it. It is the least of several runs, so that other work on the
+machine adds little. Growth compares 2n with n, after subtracting what rsc needs for any program.
 """
 
 import json
@@ -21,11 +21,11 @@ RUNS = 5
 MOST_RUNS = 25  # while a ratio is above its bar: other work on the machine may be the reason
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROWTH_BAR = BARS["compile/growth_of_memory"]
-LITTLE, LITTLE_TIME = 4096, 1e-3  # KiB, seconds; of less, nobody can tell how it grows
+LITTLE, LITTLE_TIME = 4096, 1e-3  # KiB, seconds; below that, growth cannot be measured
 
 
 def write(source, folder):
-    """The program as files; gives the path of robot.rsl."""
+    """Writes the program's files; returns the path of robot.rsl."""
     program = Path(folder) / "robot.rsl"
     program.write_text("\n".join(source.lines) + "\n")
     robot = compile_programs.the_robot() if source.robot is None else source.robot
@@ -37,7 +37,7 @@ def write(source, folder):
 
 
 def check(program, *options):
-    """(seconds of CPU, KiB of memory, exit code) of `rsc check`."""
+    """Returns (seconds of CPU, KiB of memory, exit code) of `rsc check`."""
     said = subprocess.run([str(USAGE), str(rsc.TOOL), "check", str(program), *options], check=True, text=True,
                           timeout=rsc.TIMEOUT, stdout=subprocess.PIPE).stdout
     microseconds, memory, code = map(int, said.split())
@@ -47,13 +47,13 @@ def check(program, *options):
 
 
 def least(program, runs=RUNS, options=()):
-    """(seconds, KiB), each the least of some runs."""
+    """Returns (seconds, KiB), each the least of several runs."""
     measured = [check(program, *options)[:2] for _ in range(runs)]
     return tuple(map(min, zip(*measured)))
 
 
 class Growing:
-    """A program of n and one of 2n, measured until their ratio is fine, or often enough."""
+    """A program of size n and one of 2n, measured until their ratio meets the bar, at most MOST_RUNS times."""
 
     def __init__(self, make, n, base):
         self._base = base
@@ -70,22 +70,23 @@ class Growing:
                 self._ratios = tuple(map(min, self._ratios, self._measure(programs)))
 
     def _measure(self, programs):
-        """The two in turn: a machine that is slow for a while is slow for both. The ratios, as below."""
+        """Measures the two programs in turn, so that a slow phase of the machine affects both. Returns the ratios, as
+        below."""
         rounds = [[check(program)[:2] for program in programs] for _ in range(RUNS)]
         (few, few_kib), (many, many_kib) = (
             [min(used) - base for used, base in zip(zip(*each), self._base)] for each in zip(*rounds))
         return max(many, 0) / max(few, LITTLE_TIME), max(many_kib, 0) / max(few_kib, LITTLE)
 
     def ratios(self):
-        """(of time, of memory): the least of several rounds."""
+        """(time, memory): the least of several rounds."""
         return self._ratios
 
 
 def lines_per_second(source, without=0):
-    """`without`: seconds that do not count."""
+    """`without`: seconds to subtract."""
     with tempfile.TemporaryDirectory() as folder:
         program = write(source, folder)
-        anyway = ["--anyway"]  # so many rules are more than a board can keep up with
+        anyway = ["--anyway"]  # a board cannot keep up with this many rules
         if check(program, *anyway)[2] != 0:
             raise BenchError("rsc check finds errors in the large program")
         return round(len(source.lines) / (least(program, options=anyway)[0] - without))

@@ -1,5 +1,5 @@
-"""The programs that scripts/bench gives to the compiler: a large one of the kind that people write, and
-ones that repeat one thing n times, right or wrong, which must not take more than n times as long."""
+"""The programs that scripts/bench compiles: a large one such as people write, and ones that repeat one thing n times,
+right or wrong, which must not take more than n times as long."""
 
 import copy
 import json
@@ -11,19 +11,19 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @dataclass
 class Source:
-    """What `rsc check` is given: the program, robot.json as an object or a text, and the modules."""
+    """The input of `rsc check`: the program, robot.json as an object or a text, and the modules."""
     lines: list
     robot: object = None
     modules: dict = field(default_factory=dict)
 
 
 def the_robot():
-    """robot.json of docs/language.md: a robot with a bit of everything."""
+    """The robot.json of docs/language.md, which uses a bit of everything."""
     return json.loads((ROOT / "docs/robot.json").read_text())
 
 
 def word(number):
-    """A name of letters, another for each number; they differ in their middle."""
+    """A name of letters, different for each number; the names differ in the middle."""
     letters = ""
     for _ in range(4):
         number, last = divmod(number, 26)
@@ -70,7 +70,7 @@ DO SET mood TO scared
 END
 """.splitlines()
 
-# One of each kind of rule that docs/language.md shows; {a} to {c} are other numbers each time.
+# One of each kind of rule in docs/language.md; {a} to {c} get other numbers in each copy.
 RULES = [part.splitlines() for part in """\
   # somebody comes near, {a}
   WHEN proximity DISTANCE < {a}cm FOR 1s
@@ -156,7 +156,7 @@ END""".splitlines()
 
 
 def numbered(lines, number):
-    """The lines with other numbers in each copy."""
+    """The lines, with other numbers in each copy."""
     return [line.format(a=20 + number * 7 % 60, b=10 + number * 11 % 90, c=1 + number % 8, n=number)
             for line in lines]
 
@@ -175,11 +175,11 @@ def large_rules(lines, behaviors=60):
     return program
 
 
-RULE_LINES = 2500  # of rules of every kind; an image holds a little more
+RULE_LINES = 2500  # rules of every kind; an image can hold a few more
 
 
 def large_program(lines):
-    """About as many rules as an image holds, and TEST blocks up to that many lines: it compiles."""
+    """About as many rules as an image can hold, then TEST blocks up to that many lines. It compiles."""
     program, test = large_rules(RULE_LINES), 0
     while len(program) < lines:
         program += numbered(TEST, test)
@@ -279,13 +279,13 @@ def tests(n):
 
 
 def long_chain_of_modules(n):
-    """Each USEs the next; 64 are the most, and the last of these are large."""
+    """Each module USEs the next. 64 is the limit, and the last of these modules are large."""
     modules = {f"m{i}.rsl": f'USE "m{i + 1}.rsl"\nLET x{i} = 1\n' for i in range(n)}
     return Source(['USE "m0.rsl"'] + RULE, the_robot(), modules)
 
 
 def modules(n):
-    """As many as there may be, larger and larger ones."""
+    """As many modules as allowed, growing with n."""
     texts = {f"m{i}.rsl": "".join(f"DEFINE d_{i}_{k}\n  MOVE arms SLOWLY\nEND\n"
                                   for k in range(n // 50)) for i in range(50)}
     return Source([f'USE "{name}"' for name in texts] + RULE, the_robot(), texts)
@@ -301,7 +301,7 @@ def missing_modules(n):
 
 
 def with_robot(change):
-    """As a program and a robot.json that `change` has done something to."""
+    """Returns the program, and a robot.json that `change` has modified."""
     def make(n):
         robot = copy.deepcopy(the_robot())
         lines = change(robot, n)
@@ -349,7 +349,7 @@ def repeated_keys(n):
     return Source(RULE, f"{text[:-1]}, {members}}}")
 
 
-# Each with an n for which it takes long enough to be measured.
+# Each with an n that takes long enough to be measured.
 REPEATED = {
     misspelt_names: 4000, misspelt_defines: 4000, unknown_verbs: 4000, names_twice: 8000,
     syntax_errors: 24000, open_blocks: 16000, deep_nesting: 20000, long_line: 4000,

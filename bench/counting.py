@@ -1,4 +1,4 @@
-"""Runs an ELF in QEMU under the counting plugin, and gives what was counted between markers."""
+"""Runs an ELF in QEMU under the counting plugin, and returns the counts between markers."""
 
 import copy
 import functools
@@ -15,31 +15,31 @@ ROOT = Path(__file__).resolve().parents[1]
 BUILT = ROOT / "build/m4/bench"
 PLUGIN = ROOT / "build/host/bench/libcount_plugin.so"
 TIMEOUT = 120
-PATIENCE = 60  # seconds for what takes one, on a busy machine
+PATIENCE = 60  # seconds; normally one is enough, but the machine may be busy
 IMAGE_ADDRESS = 0x21000000  # bench/firmware/given.hpp
 READINGS_ADDRESS = 0x21100000
-READING = "robosync::layers::Mailboxes::post("  # a sensor's, which it takes at its rate: a clock of the robot's own
+READING = "robosync::layers::Mailboxes::post("  # called at the sensor's sample rate, so it serves as a clock in the robot's time
 
 
 class BenchError(RuntimeError):
-    """Something needed for a figure is missing, or the bench firmware says it failed."""
+    """Something that a figure needs is missing, or the bench firmware reports a failure."""
 
 
 @functools.cache
 def symbols(elf):
-    """{name: address} of an ELF, C++ names as the source writes them, the Thumb bit taken off."""
+    """{name: address} of an ELF. C++ names are demangled, and the Thumb bit is cleared."""
     listing = subprocess.run(["arm-none-eabi-nm", "-C", str(elf)], check=True, text=True,
                              stdout=subprocess.PIPE).stdout
     found = {}
     for line in listing.splitlines():
         words = line.split(maxsplit=2)
-        if len(words) == 3 and line[0] != " ":  # undefined ones have no address, a few no name
+        if len(words) == 3 and line[0] != " ":  # undefined symbols have no address, and a few have no name
             found[words[2]] = int(words[0], 16) & ~1
     return found
 
 
 def functions(*wanted):
-    """{beginning of a name: address} of the shipped firmware's functions."""
+    """{start of a name: address} of functions in the shipped firmware."""
     found = {begin: at for name, at in symbols(FIRMWARE).items() for begin in wanted if name.startswith(begin)}
     if len(found) != len(wanted):
         raise BenchError(f"the firmware has not all of {wanted}")
@@ -48,7 +48,7 @@ def functions(*wanted):
 
 @functools.cache
 def of_the_board(name):
-    """What the code of the firmware's own board begins with, whichever board that is."""
+    """Puts the namespace of the firmware's own board in front of a name."""
     for known in symbols(FIRMWARE):
         if found := re.match(r"robosync::boards::\w+::(?=Board::)", known):
             return found[0] + name
@@ -56,17 +56,17 @@ def of_the_board(name):
 
 
 class Count(int):
-    """A number of executed instructions, which knows which they were when the plugin profiles: at a mark, or between two.
-    What is chosen of several by max() and its like still does; what is figured out of them is a number."""
+    """A number of executed instructions, at a mark or between two. When the plugin profiles, it also knows which
+    instructions these were. A count chosen by max() and the like keeps that; other arithmetic gives a plain number."""
 
     def __new__(cls, value, places, line=None):
         count = super().__new__(cls, value)
-        count.places = places  # of each line of the plugin's: [(address, how often it ran)]
-        count.line = line  # of a mark
+        count.places = places  # for each line of the plugin's output: [(address, how often it ran)]
+        count.line = line  # of the mark
         return count
 
     def __add__(self, other):
-        """What ran later, of which nobody knows what it was."""
+        """Adds instructions that are not in the profile."""
         return Count(int(self) + int(other), self.places)
 
     def __sub__(self, other):
@@ -77,8 +77,8 @@ class Count(int):
 
 
 class Marks:
-    """What the plugin wrote: [(marker name, instructions executed before it)], and for each of them those
-    executed apart; and what the firmware said: [[word, number …]]."""
+    """What the plugin wrote: [(marker name, instructions executed before it)], and for each mark the instructions
+    counted apart. Also what the firmware printed: [[word, number …]]."""
 
     def __init__(self, names, path, said=""):
         by_address = {address: name for name, address in names.items()}
@@ -104,7 +104,7 @@ class Marks:
         return found
 
     def parts(self, begin, end):
-        """The marks from each `begin` to the next `end`, as marks of their own."""
+        """The marks from each `begin` to the next `end`, each as Marks."""
         names = [name for name, _ in self.all]
         found = []
         for start in (i for i, name in enumerate(names) if name == begin):
@@ -114,13 +114,13 @@ class Marks:
         return found
 
     def heard(self, what):
-        """The numbers of each line that began with this word."""
+        """The numbers of each printed line that begins with this word."""
         return [numbers for word, *numbers in self.said if word == what]
 
 
 def wait_for_readings(path, times, what=READING):
-    """Until the plugin has written so many marks of readings from now on: so much time has passed for the robot, however
-    slow the host is. Or of another function."""
+    """Waits until the plugin has written this many more marks of readings: a time on the robot's clock, however slow
+    the host is. `what`: another function to count."""
     mark = f"{functions(what)[what]:x} "
     deadline = time.monotonic() + PATIENCE
     with open(path, encoding="ascii") as lines:
@@ -134,11 +134,11 @@ def wait_for_readings(path, times, what=READING):
                 time.sleep(0.01)
 
 
-profiling = False  # does the plugin say what ran (profile.py)?
+profiling = False  # whether the plugin also writes a profile (profiled.py)
 
 
 def plugin_arguments(names, out, apart=()):
-    """`apart`: [(begin, end)] of the code whose instructions are counted by themselves."""
+    """`apart`: [(begin, end)] of the code whose instructions are counted separately."""
     if not PLUGIN.exists():
         raise BenchError(f"no {PLUGIN}: build the preset host first")
     marks = "".join(f",mark={address:#x}" for address in names.values())
@@ -147,7 +147,7 @@ def plugin_arguments(names, out, apart=()):
 
 
 def code_of_function(function):
-    """[(address, instruction)] of a function of the shipped firmware, whose name begins so."""
+    """[(address, instruction)] of the function in the shipped firmware whose name begins with `function`."""
     listing = subprocess.run(["arm-none-eabi-objdump", "-d", "-C", "--no-show-raw-insn", str(FIRMWARE)], check=True,
                              text=True, stdout=subprocess.PIPE).stdout
     code = re.search(rf"^\w+ <{re.escape(function)}.*?^$", listing, re.M | re.S)
@@ -157,18 +157,18 @@ def code_of_function(function):
 
 
 def ends_of(function):
-    """Addresses of the instructions by which it returns."""
+    """Addresses of the function's return instructions."""
     return [at for at, what in code_of_function(function) if what.endswith("pc}") or what == "bx\tlr"]
 
 
 def begin_of(handler):
-    """The second instruction of an interrupt's handler: of one that comes while a device is accessed, QEMU shows the plugin no
-    first one."""
+    """The address of the second instruction of an interrupt handler: if the interrupt comes during a device access,
+    QEMU does not show the first one to the plugin."""
     return code_of_function(handler)[1][0]
 
 
 def return_instructions(elf, function):
-    """Addresses of the instructions by which an exception handler returns."""
+    """Addresses of the return instructions of an exception handler."""
     listing = subprocess.run(["arm-none-eabi-objdump", "-d", f"--disassemble={function}", str(elf)],
                              check=True, text=True, stdout=subprocess.PIPE).stdout
     found = [line.split(":")[0] for line in listing.splitlines() if line.endswith("bx\tlr")]
@@ -180,7 +180,7 @@ def loaded(path, address):
 
 
 def run_given(elf, image, readings=(), extra=None):
-    """run() with an image, and the readings that its rules or CHECKs get one after the other."""
+    """run() with an image, and with the readings that its rules or CHECKs get one after another."""
     with tempfile.TemporaryDirectory(prefix="robosync-bench-") as folder:
         file = Path(folder) / "readings"
         file.write_bytes(struct.pack(f"<{1 + len(readings)}i", len(readings), *readings))
@@ -188,7 +188,7 @@ def run_given(elf, image, readings=(), extra=None):
 
 
 def run(elf, arguments=(), extra=None):
-    """Boots a bench firmware (it ends QEMU itself); gives its marks, and the `extra` ones."""
+    """Boots a bench firmware, which ends QEMU itself. Returns its marks and the `extra` ones."""
     if not Path(elf).exists():
         raise BenchError(f"no {elf}: build the preset m4 first")
     names = {name: at for name, at in symbols(elf).items() if name.startswith("mark_")}

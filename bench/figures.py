@@ -1,4 +1,4 @@
-"""What is measured: each function gives {name: (value, unit)}. The bars stand in bars.json."""
+"""The measurements: each function returns {name: (value, unit)}. The bars are in bars.json."""
 
 import os
 import re
@@ -26,8 +26,8 @@ def compile_example(folder, *options):
 
 
 def image_figures():
-    """Bytes of the paper's program, with wiring and names; without the table of source lines, as
-    `rsc upload` sends it, and with it."""
+    """Bytes of the paper's program, with wiring and names: without the table of source lines, as `rsc upload` sends it,
+    and with it."""
     with tempfile.TemporaryDirectory() as folder:
         with_lines = compile_example(folder).stat().st_size
         size = compile_example(folder, "--strip").stat().st_size
@@ -38,7 +38,7 @@ def image_figures():
 
 
 def tool_figures():
-    """What `scripts/build --prefix` puts on a computer."""
+    """What `scripts/build --prefix` installs on a computer."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(["cmake", "--install", ROOT / "build/host", "--prefix", folder, "--component", "tool",
                         "--strip"], check=True, stdout=subprocess.DEVNULL)
@@ -47,7 +47,7 @@ def tool_figures():
 
 
 def opcode_spans(marks):
-    """{opcode: [worst instructions in a condition or response, dispatch included]}."""
+    """{opcode: [worst-case instructions in a condition or response, including dispatch]}."""
     listed = re.findall(r"^OPCODE\((\w+),.*?(\w+),\s*\w+,\s*(\d+),\s*\"",
                         (ROOT / "vm/opcodes.def").read_text(), re.M)
     counts, index, start = {name: {} for name, *_ in listed}, -1, 0
@@ -63,7 +63,7 @@ def opcode_spans(marks):
         raise BenchError("the bench firmware was built from another opcodes.def")
     base = {mark: counts[end][mark]
             for mark, end in (("mark_condition_end", "ret"), ("mark_response_end", "end"))}
-    # The cost of what ends or pauses has entering and leaving the code in it.
+    # The cost of an opcode that ends or pauses includes entering and leaving the code.
     leaves = {"end", "pause", "poll_begin", "poll_end"}
     return {name: (max(worst - (0 if flow in leaves else base[mark])
                        for mark, worst in counts[name].items()), int(declared))
@@ -83,7 +83,7 @@ def opcode_figures():
 
 
 def tick_cost(marks):
-    """Instructions a tick adds to a spinning thread."""
+    """Instructions that a tick adds to a spinning thread."""
     costs, ticks, start = [], 0, 0
     for name, count in marks.all:
         if name == "mark_spin_begin":
@@ -98,8 +98,8 @@ def tick_cost(marks):
 
 
 def switches(marks, begin, end):
-    """Instructions of each context switch that began and ended there, both included. The two ends of
-    the handler: into a thread with privileges, and without (port/cortex-m4/switch.S)."""
+    """Instructions of each context switch from `begin` to `end`, including both. The handler has two ends: into a
+    privileged thread, and into an unprivileged one (port/cortex-m4/switch.S)."""
     ends = [(name, count) for name, count in marks.all
             if name.startswith(("PendSV", "return"))]
     found = [last - first + 1 for (first_name, first), (last_name, last) in zip(ends, ends[1:])
@@ -110,15 +110,15 @@ def switches(marks, begin, end):
 
 
 def yields(marks, to):
-    """Instructions from where a thread lets another one run to the first behind the call by which that one
-    had left the processor."""
+    """Instructions from where a thread yields to another one until that one's call, in which it had left the processor,
+    has returned."""
     ends = [mark for mark in marks.all if mark[0] in ("mark_yields", "mark_high_runs", "mark_open_runs")]
     return [last - first for (begin, first), (end, last) in zip(ends, ends[1:])
             if (begin, end) == ("mark_yields", to)]
 
 
 def kernel_figures_of(marks):
-    """What the kernel's steps cost at most, in instructions."""
+    """Worst-case costs of the kernel's operations, in instructions."""
     return {
         "switch": max(switches(marks, "PendSV_Handler", "return")),
         "switch_isolated": max(switches(marks, "PendSV_Unprivileged_Handler", "return_open")),
@@ -140,14 +140,14 @@ def kernel_figures_of(marks):
 
 
 CORE = (ROOT / "runtime-m4/port/cortex-m4/core.hpp").read_text("utf-8")
-# What a Lock holds off; a SwitchLock, nothing but the switch.
+# Lock masks interrupts up to the kernel's level; SwitchLock masks only the context switch.
 KERNEL_LEVEL, SWITCH_LEVEL = (int(re.search(rf"{name} = (0x\w+);", CORE)[1], 16)
                               for name in ("kKernelPriority", "kSwitchPriority"))
 
 
 def lock_out(raised, marks):
-    """The most instructions in a row with BASEPRI at the kernel's level: how long an interrupt may be
-    held off. `raised`: raised_levels()."""
+    """The most consecutive instructions with BASEPRI at the kernel's level: how long an interrupt may be masked.
+    `raised`: raised_levels()."""
     longest, levels, since = 0, [], 0
     for name, count in marks.all:
         if not name.startswith("basepri"):
@@ -158,7 +158,7 @@ def lock_out(raised, marks):
         elif levels:
             levels.pop()
         else:
-            levels.append(KERNEL_LEVEL)  # OnlyLock writes BASEPRI itself, and is never inside
+            levels.append(KERNEL_LEVEL)  # OnlyLock writes BASEPRI directly, and is never nested
         if not held and KERNEL_LEVEL in levels:
             since = count
         elif held and KERNEL_LEVEL not in levels:
@@ -167,8 +167,8 @@ def lock_out(raised, marks):
 
 
 def idle_figures_of(marks):
-    """A second in which no thread has anything to do: how often the core wakes, and what it executes;
-    and the longest stretch with all interrupts held off, around the sleep."""
+    """A second in which no thread has anything to do: how often the core wakes, and how many instructions it executes.
+    Also the longest stretch around the sleep with all interrupts masked."""
     [second] = marks.parts("mark_idle", "mark_idled")
     return {
         "kernel/idle_wakes": (sum(name == "robosync_count_sleep" for name, _ in second.all), "1/s"),
@@ -190,7 +190,7 @@ def basepri_instructions(elf):
 
 
 def raised_levels(elf):
-    """{name: level} of the instructions that raise BASEPRI: what was last moved into their register."""
+    """{name: level} of the instructions that raise BASEPRI: the last value moved into their register."""
     levels, moved = {}, {}
     for line in listing_of(elf).splitlines():
         if move := re.search(r"\tmov[sw.]*\t(\w+), #(\d+)", line):
@@ -203,8 +203,7 @@ def raised_levels(elf):
 
 
 def kernel_figures():
-    """Each figure as it is among 64 threads, and by how much the one grows most that does since
-    there were 7."""
+    """Each figure with 64 threads, and the largest growth of any figure since there were 7."""
     elf = BUILT / "bench_kernel"
     places = {name: symbols(elf)[name]
               for name in ("SysTick_Handler", "PendSV_Handler", "PendSV_Unprivileged_Handler",
@@ -234,7 +233,7 @@ def kernel_figures():
 def sections_by_object(map_file):
     """[(object file, section, bytes)] of what the linker kept."""
     text = Path(map_file).read_text().split("Linker script and memory map", 1)[1]
-    text = re.sub(r"^( \.\S+)\n +", r"\1 ", text, flags=re.M)  # long names take a line of their own
+    text = re.sub(r"^( \.\S+)\n +", r"\1 ", text, flags=re.M)  # long names are on their own line
     found = re.findall(r"^ (\.\S+) +(0x[0-9a-f]+) +(0x[0-9a-f]+) (\S+)$", text, re.M)
     return [(path, section, int(size, 16)) for section, address, size, path in found]
 
@@ -253,7 +252,7 @@ def flash_of(map_file, names):
 
 
 def firmware_flash():
-    """What a board is flashed with."""
+    """The size of what is flashed to a board."""
     if not FIRMWARE.exists():
         raise BenchError(f"no {FIRMWARE}: build the preset {FIRMWARE.parent.name} first")
     listing = subprocess.run(["arm-none-eabi-size", str(FIRMWARE)], check=True, text=True,
@@ -277,10 +276,10 @@ def size_figures():
 
 
 def link_figures():
-    """Uploading the paper's program over a line of 115,200 baud, from calling rsc to its end."""
+    """Uploads the paper's program over a line of 115,200 baud, timed from the start of rsc to its end."""
     with tempfile.TemporaryDirectory() as folder, Board() as board:
         image = compile_example(folder, "--strip")
-        # What rsc remembers of a board that had this one's number is nothing to go by.
+        # Ignores what rsc remembers of another board with this number.
         with mock.patch.dict(os.environ, XDG_CACHE_HOME=str(Path(folder) / "cache")), Tap(folder, board.port) as tap:
             begin = time.monotonic()
             rsc.run("upload", image, "--port", tap.port)
@@ -301,7 +300,7 @@ def signature_figures():
 
 
 def ear_figures():
-    """What a board with a microphone would take for 20 ms of sound: the dearest of many blocks."""
+    """What a board with a microphone would need for 20 ms of sound: the most expensive of many blocks."""
     return {"ear/block": (max(run(BUILT / "bench_ear").spans("mark_ear_begin", "mark_ear_end")), "insn")}
 
 

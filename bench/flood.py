@@ -1,9 +1,8 @@
-"""A host that floods the line of the board with an upload that never comes to its end: what the load of bench/safety.py has
-of the link.
+"""A host that floods the board's line with an upload that never ends: the link's part of the load in bench/safety.py.
 
-The emulated line would take bytes twenty times as fast as a real one has them, so they go by the robot's time: a handful
-when the board has executed what it executes while a line of 115,200 baud has as many. The board answers each frame. Among
-them stand the stop frames of a person.
+The emulated line would accept bytes twenty times as fast as a real one, so the bytes are paced by the robot's time: a
+handful whenever the board has executed the instructions that it executes while a line of 115,200 baud carries as many.
+The board answers each frame. A person's stop frames are sent among them.
 """
 
 import random
@@ -16,15 +15,16 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests/e2e"))
 import wire  # noqa: E402
 
-IMAGE = random.Random(1).randbytes(4000)  # nobody asks to activate it
-BYTE_TAKES = 25_000_000 // 11_520  # instructions: the board has 25 MHz, and is busy most of the time
+IMAGE = random.Random(1).randbytes(4000)  # never activated
+BYTE_TAKES = 25_000_000 // 11_520  # instructions: the board runs at 25 MHz, and is busy most of the time
 HANDFUL = 8
 STOP_SEQUENCE = 255  # link::kStopSequence
 STOP = wire.frame("stop", sequence=STOP_SEQUENCE)
 
 
 def endless_upload(line):
-    """The frames of one transfer after the other; the board takes each `begin` with another name for a new one."""
+    """The frames of one transfer after another. Each `begin` has another name, so the board takes it for a new
+    transfer."""
     most = wire.MOST_PAYLOAD - wire.layout("Data").size
     yield wire.frame("hello", line.introduction())
     for number in range(1, 1 << 32):
@@ -34,14 +34,14 @@ def endless_upload(line):
 
 
 class Flood(wire.Line):
-    """Floods from start() to quiet(), and again; between them it can be asked as any other line. `marks`: the file of the
-    plugin, which says how much the board has executed."""
+    """Floods from start() to quiet(), and again. In between it can be asked like any other line. `marks`: the plugin's
+    file, which shows how much the board has executed."""
 
     def __init__(self, path, marks):
         super().__init__(path)
         self._marks = open(marks, encoding="ascii")
         self._executed = 0
-        self._cut = ""  # the beginning of a line
+        self._cut = ""  # an incomplete line at the end
         self._frames = endless_upload(self)
         self._said = []
         self._quiet = threading.Event()
@@ -50,7 +50,7 @@ class Flood(wire.Line):
     def start(self):
         self._quiet.clear()
         self._marks.seek(0, 2)
-        while not self._marks.readline().endswith("\n"):  # the line it stands in
+        while not self._marks.readline().endswith("\n"):  # the rest of the current line
             time.sleep(0.0002)
         self._cut = ""
         self._threads = [threading.Thread(target=job, daemon=True) for job in (self._write, self._read)]
@@ -58,18 +58,18 @@ class Flood(wire.Line):
             thread.start()
 
     def quiet(self):
-        """Returns when the board has read all that was sent."""
+        """Stops, and returns when the board has read everything that was sent."""
         self._quiet.set()
         for thread in self._threads:
             thread.join()
-        self.send_raw(b"\0" + wire.frame("hello"))  # its reply ends what was cut off
+        self.send_raw(b"\0" + wire.frame("hello"))  # its reply ends the frame that was cut off
         while b"\0" not in self._received:
             self._received += self._socket.recv(4096)
         self._received = self._received.split(b"\0", 1)[1]
         self.ask("get_status", reply="status")
 
     def say(self, frame):
-        """In the midst of the flood."""
+        """Sends the frame in the middle of the flood."""
         self._said.append(frame)
 
     def close(self):
@@ -90,7 +90,7 @@ class Flood(wire.Line):
             waiting = waiting[HANDFUL:]
 
     def _now(self):
-        """What the board has executed, at its last mark."""
+        """The instructions that the board has executed, as of its last mark."""
         written = self._marks.read()
         if not written:
             time.sleep(0.0002)

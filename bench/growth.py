@@ -1,5 +1,5 @@
-"""What rules cost that have nothing to do: a step in which one reading concerns one rule, among ever
-more of them; and images at the limits of the format, verified and loaded."""
+"""What idle rules cost: a step in which one reading concerns one rule, among more and more of them. Also images at the
+limits of the format, verified and loaded."""
 
 import json
 import tempfile
@@ -8,17 +8,17 @@ from pathlib import Path
 import rsc
 from counting import BUILT, BenchError, run_given
 
-ABOVE, BELOW = 60_000, 40_000  # thousandths: on either side of the threshold of the rule
+ABOVE, BELOW = 60_000, 40_000  # thousandths: on either side of the rule's threshold
 READINGS = (ABOVE, BELOW) * 4
 RULES = (10, 20, 40, 100, 300, 1000)
-FEW_RULES = 40  # are in 10 behaviours and 8 channels; more in as many as there may be
+FEW_RULES = 40  # up to this many are in 10 behaviours and 8 channels; more are in as many as the format allows
 ACTUATORS = 2
 FIRMWARE = BUILT / "bench_step.elf"
-COMMANDS_OF_64K = 2540  # of 1,000 rules, so that their image is just below 64 KB
+COMMANDS_OF_64K = 2540  # for 1,000 rules, so that their image is just below 64 KB
 
 
 def robot(channels, actuators):
-    """robot.json as an object: one sensor that is fed, and some actuators, all virtual."""
+    """robot.json as an object: one fed sensor, and some actuators, all virtual."""
     return {
         "sensors": [{"name": "s", "type": "VIRTUAL",
                      "channels": {f"c{i}": {"range": [0, 100]} for i in range(channels)}}],
@@ -28,8 +28,8 @@ def robot(channels, actuators):
 
 
 def program(rules, behaviors, channels, actuators, commands):
-    """RSL: rules spread evenly over behaviours, and commands over the rules, each of which has a
-    response of its own. Only the rule in the middle reads channel c0."""
+    """RSL: rules are spread evenly over behaviours, and commands over the rules. Each rule has its own response. Only
+    the rule in the middle reads channel c0."""
     lines, rule, middle = [], 0, rules // 2
     for behavior in range(behaviors):
         lines.append(f"BEHAVIOR b{behavior} PRIORITY {99 - behavior}")
@@ -60,8 +60,8 @@ def compiled(folder, rules, commands=None):
 
 
 class Steps:
-    """Instructions of loading an image, of the costliest step in which a channel has its first reading
-    (the first time, a behaviour evaluates all of its rules), of the costliest later one, and of the costliest that
+    """Instructions for loading an image; for the most expensive step in which a channel has its first reading (a
+    behaviour then evaluates all of its rules); for the most expensive later step; and for the most expensive one that
     fires nothing."""
 
     def __init__(self, elf, image):
@@ -78,14 +78,14 @@ class Steps:
 
 
 def verify_cost(image):
-    """Instructions of the verifier for each word of the image."""
+    """Instructions of the verifier per word of the image."""
     marks = run_given(BUILT / "bench_workload", image)
     words = image.stat().st_size // 4
     return round(marks.spans("mark_verify_begin", "mark_verify_end")[0] / words, 1)
 
 
 def growth_between(steps, few, many):
-    """How many times as dear a step is among `many` rules as among `few` in as many behaviours."""
+    """How much more a step costs among `many` rules than among `few` in as many behaviours, as a factor."""
     return round(steps[many].later / steps[few].later, 3)
 
 

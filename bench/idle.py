@@ -1,10 +1,10 @@
-"""What the shipped firmware executes in a second in which nothing happens: without a program, and with
-the paper's, whose touch sensor is sampled 50 times a second over I2C. Nobody talks to it.
+"""What the shipped firmware executes in a second in which nothing happens: without a program, and with the paper's,
+whose touch sensor is sampled 50 times a second over I2C. No host talks to it.
 
-Seconds are counted by the kicks of the watchdog, which the safety monitor gives every so many milliseconds.
-The I2C bus of this board is bit-banged: waiting for half a bit is executed, too, and costs what it costs
-at 100 kHz whoever waits. So all that the code of the bus (I2c of the board's i2c.cpp) executes is
-counted apart, by its addresses: what interrupts it is not.
+Seconds are counted by the watchdog kicks, which the safety monitor sends at a fixed period. The I2C bus of this board
+is bit-banged: waiting for half a bit executes instructions, too, and at 100 kHz their number does not depend on the
+code that waits. So everything that the bus code executes (I2c of the board's i2c.cpp) is counted apart, by its
+addresses; the code that interrupts it is not.
 """
 
 import math
@@ -23,14 +23,14 @@ from workloads import PAPER
 KICK = "Board::watchdog_kick("
 BUS = ("I2c::",)  # code of the board
 SECONDS = 10  # measured, at the end of the run
-BYTES_OF_MARK = 24  # of a kick, at most
+BYTES_OF_MARK = 24  # per kick, at most
 BYTES_OF_THOUSANDS = 100_000
-STARTED = 2  # kicks after which the firmware has
-PATIENCE = 30  # seconds until so many have passed: the core's sleep takes no time
+STARTED = 2  # kicks after which the firmware has started
+PATIENCE = 30  # seconds to wait for that many: the core's sleep takes no time
 
 
 def code_of(prefixes):
-    """[(begin, end)] of the firmware's functions whose names begin so."""
+    """[(begin, end)] of the firmware's functions whose names begin with one of these."""
     listing = subprocess.run(["arm-none-eabi-nm", "-S", "-C", str(FIRMWARE)], check=True, text=True,
                              stdout=subprocess.PIPE).stdout
     code = []
@@ -43,7 +43,7 @@ def code_of(prefixes):
 
 
 def kicks(bytes_of_marks, program=None):
-    """The marks of the watchdog's kicks, from power-up until they are so many."""
+    """The marks of the watchdog kicks, from power-up until the marks fill this many bytes."""
     known = functions(of_the_board(KICK))
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "marks"
@@ -60,7 +60,7 @@ def kicks(bytes_of_marks, program=None):
 
 
 def idle_second(period, program):
-    """The costliest of some seconds, which have kicks every `period` milliseconds: (instructions, apart)."""
+    """The most expensive of several seconds with a kick every `period` milliseconds: (instructions, apart)."""
     marks = kicks(BYTES_OF_THOUSANDS, program)
     second = 1000 // period
     last = range(len(marks.all) - SECONDS * second, len(marks.all), second)
@@ -69,8 +69,8 @@ def idle_second(period, program):
 
 
 def idle_alone():
-    """Of a board without a program, the costliest of those of its first minute, in which the kernel looks once at timers that are far off:
-    it is the same in each run. Counted over the periods that a second begins, and taken down to it."""
+    """The most expensive second in the first minute of a board without a program, which includes the kernel's one look
+    at distant timers; so every run gives the same. Counted over whole kick periods, and scaled down to a second."""
     period = periods.idle_ms()
     second, minute = math.ceil(1000 / period), math.ceil(60_000 / period)
     counts = [count for _, count in kicks(BYTES_OF_MARK * minute).all][STARTED:minute]

@@ -1,4 +1,4 @@
-"""A board that has kept a program, and powers up with it."""
+"""A board that has kept a program and powers up with it."""
 
 import time
 from pathlib import Path
@@ -9,7 +9,7 @@ from counting import BenchError
 
 
 def wait_until_kept(port):
-    """Until the program has stood its trial; gives what the board says of itself."""
+    """Waits until the program has passed its trial; returns the board's report about itself."""
     give_up = time.monotonic() + rsc.TIMEOUT
     while (info := rsc.info(port))["kept"]["state"] != "kept":
         if time.monotonic() > give_up:
@@ -18,7 +18,7 @@ def wait_until_kept(port):
 
 
 def store_with(image, folder):
-    """The file in which a board has kept that program."""
+    """The store file of a board that has kept that program."""
     store = Path(folder) / "store"
     with Board(icount=FAST, store=store) as board:
         rsc.run("upload", image, "--port", board.port)

@@ -1,6 +1,6 @@
-"""RAM: what the firmware takes without a program, with the paper's, and what one more behaviour, sensor, actuator and
-rule takes of a board's memory for programs, as `rsc check --timing` counts it; the board's own report must agree.
-The program's image counts by itself (`image/…`), and so does what the MPU's borders waste."""
+"""RAM: what the firmware needs without a program and with the paper's, and what one more behaviour, sensor, actuator or
+rule takes of a board's memory for programs, as counted by `rsc check --timing`. The board's own report must agree. The
+program's image is counted separately (`image/…`), and so is the space lost to the MPU's alignment."""
 
 import json
 import subprocess
@@ -12,7 +12,7 @@ from board import FAST, FIRMWARE, Board
 from counting import BenchError
 from workloads import PAPER
 
-MORE = 8  # at once, so that no rounding shows
+MORE = 8  # added together, so that rounding does not show
 NO_PART = ("image", "borders", "memory")
 FEW = {"behaviors": 8, "sensors": 4, "actuators": 16, "rules": 64}
 
@@ -25,7 +25,7 @@ def robot(sensors, actuators):
 
 
 def program(behaviors, sensors, actuators, rules):
-    """Rules spread evenly; the last one reads every sensor. Each moves an actuator in turn."""
+    """Rules are spread evenly; the last one reads every sensor. Each moves one actuator, in turn."""
     lines, all_sensors = [], " OR ".join(f"s{i} > 5" for i in range(sensors))
     for b in range(behaviors):
         lines.append(f"BEHAVIOR b{b} PRIORITY {99 - b}")
@@ -37,7 +37,7 @@ def program(behaviors, sensors, actuators, rules):
 
 
 def parts(**counts):
-    """Bytes of the parts that such a program takes, but for its image."""
+    """Bytes of the parts of such a program, without its image."""
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "counted.rsl"
         source.write_text(program(**counts))
@@ -52,7 +52,7 @@ def one_more(what):
 
 
 def fixed_bytes():
-    """RAM of the firmware but for its memory for programs."""
+    """RAM of the firmware, without its memory for programs."""
     listing = subprocess.run(["arm-none-eabi-size", "-A", str(FIRMWARE)], check=True, text=True,
                              stdout=subprocess.PIPE).stdout
     sizes = {line.split()[0]: int(line.split()[1]) for line in listing.splitlines() if line.startswith(".")}
@@ -60,7 +60,7 @@ def fixed_bytes():
 
 
 def used(*program_arguments):
-    """Bytes of the memory for programs that the board says are in use; the parts must add up to it."""
+    """Bytes of the memory for programs that the board reports as used. The parts must add up to it."""
     with Board(icount=FAST) as board:
         if program_arguments:
             rsc.run("upload", *program_arguments, "--port", board.port)
@@ -71,7 +71,7 @@ def used(*program_arguments):
 
 
 def firmware_ram():
-    """Of a board without a program."""
+    """The RAM of a board without a program."""
     return fixed_bytes() + used()
 
 
@@ -81,7 +81,7 @@ def memory_figures():
         "firmware/ram_fixed": (firmware_ram(), "B"),
         "firmware/ram_paper": (fixed_bytes() + used(PAPER), "B"),
         "memory/behavior": (behavior, "B"),
-        "vm/ram_per_thread": (behavior, "B"),  # all that one takes, not the interpreter's part alone
+        "vm/ram_per_thread": (behavior, "B"),  # everything a thread takes, not only the interpreter's part
         "memory/sensor": (one_more("sensors"), "B"),
         "memory/actuator": (one_more("actuators"), "B"),
         "memory/rule": (one_more("rules"), "B"),

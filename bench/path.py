@@ -1,12 +1,12 @@
-"""The way of a reading in the shipped firmware, isolation on: instructions from the paper's reading in its
-mailbox to the command at the driver of the first arm that is told to move. Everything that comes in between
-counts, interrupts too; the most of several readings is the figure.
+"""The path of a reading in the shipped firmware, with isolation on: instructions from the paper's reading in its
+mailbox to the command at the driver of the first arm that must move. Everything in between counts, including
+interrupts. The figure is the worst of several readings.
 
-An arm that follows the touch goes the same way, from the reading to its new target.
+An arm that follows the touch takes the same path, from the reading to its new target.
 
-Three conditions, as users meet them: the arms are free, with the first reading after power-up (no byte of a host comes in
-between then, whose interrupts would count with the luck of their time); they are moving, so that a response is interrupted
-and both are stopped first; and so, while `rsc monitor` listens.
+There are three conditions, as users meet them. The arms are free: the first reading after power-up, with no bytes from
+a host, whose interrupts would make the count depend on their timing. The arms are moving, so that a response is
+interrupted and both arms are stopped first. The arms are moving while `rsc monitor` listens.
 """
 
 import functools
@@ -30,7 +30,7 @@ CONCLUDE = "robosync::layers::ProcessingLayer::conclude("  # stages what the res
 WAY = (READING, COMMAND, RELEASE)
 START_UPS = 4
 CHANGES = 8
-AWAKE = 2  # touches after which the arms move for sure
+AWAKE = 2  # touches after which the arms are certain to move
 FOLLOWING = "WHILE touch LEVEL >= 0\nDO FOLLOW left_arm TO (touch LEVEL * 10deg)\nEND\n"
 LIGHT, FIRM = 1, 9  # touches on either side of the paper's threshold
 BETWEEN = 15  # readings between two touches, 300 ms; the arms move for longer
@@ -43,7 +43,7 @@ def touch_again_and_again(board, pause, changes=CHANGES):
 
 
 def wait_until_it_listens(told):
-    """`rsc monitor` says which board it is when that has begun to tell."""
+    """Waits for the first output of `rsc monitor`: it names the board when the trace has begun."""
     deadline = time.monotonic() + PATIENCE
     while told.stat().st_size == 0:
         if time.monotonic() > deadline:
@@ -52,7 +52,8 @@ def wait_until_it_listens(told):
 
 
 def drive(board, image, pause, told):
-    """Moving arms CHANGES times, then the same with a monitor, after some touches that make the arms move again."""
+    """Touches CHANGES times while the arms move, then again with a monitor. Some touches before each make the arms
+    move."""
     rsc.run("upload", image, "--port", board.port)
     pause()
     touch_again_and_again(board, pause, AWAKE + CHANGES)
@@ -93,7 +94,7 @@ def ways(marks):
 
 
 def rule_to_queue(marks):
-    """From the last rule that was looked at before each first command to the last signal before it."""
+    """Instructions from the last rule evaluated before each first command to the last signal before it."""
     found, rule, signal, waits = [], 0, 0, False
     for name, count in marks.all:
         if name == READING:
@@ -109,7 +110,7 @@ def rule_to_queue(marks):
 
 
 def follow_update(known):
-    """The most of several new targets of an arm that follows."""
+    """The worst of several new targets of an arm that follows."""
     with tempfile.TemporaryDirectory() as folder:
         program, image, out = (Path(folder) / name for name in ("follow.rsl", "follow.rsb", "marks"))
         program.write_text(FOLLOWING)
@@ -127,7 +128,7 @@ def follow_update(known):
 
 
 def sets_staged():
-    """W3 in its behaviour's thread, until the step thread has staged its SETs: the most of several times."""
+    """W3 in its behaviour's thread, until the step thread has staged its SETs: the worst of several times."""
     known = functions(RESPONSE, READING) | {CONCLUDE: ends_of(CONCLUDE)[-1]}
     with tempfile.TemporaryDirectory() as folder:
         image, out = Path(folder) / "w3.rsb", Path(folder) / "marks"

@@ -1,9 +1,9 @@
-"""A board whose touch sensor and host are this process: each reading and each byte comes when the firmware has come to a certain
-place, and never by the clock of this machine. So the shipped firmware executes the same in each run, to the instruction, on
-boards whose I2C bus QEMU has not, too.
+"""A board whose touch sensor and host are played by this process. Each reading and each byte arrives when the firmware
+has reached a certain place, never by this machine's clock. So the shipped firmware executes exactly the same
+instructions in each run, even on boards with an I2C bus that QEMU does not emulate.
 
-The sensor is a debugger, which answers in the place of its driver's function, and lets the board stand still meanwhile. The host's
-bytes go through a FIFO, one at a time and while the board stands still.
+The sensor is a debugger: it answers in place of the driver's function, and halts the board meanwhile. The host's bytes
+go through a FIFO, one at a time, while the board is halted.
 """
 
 import contextlib
@@ -24,21 +24,21 @@ import player  # noqa: E402
 import wire  # noqa: E402
 from debugger import LINK_REGISTER, PC  # noqa: E402
 
-READ = "robosync::drivers::max34451::read("  # (board, sensor, channel, where the number goes)
-SAMPLE = "robosync::layers::DriverSampler::sample("  # who calls it for a reading, and not to ask beforehand
+READ = "robosync::drivers::max34451::read("  # (board, sensor, channel, pointer to the result)
+SAMPLE = "robosync::layers::DriverSampler::sample("  # calls READ for a reading, not for the request before it
 KERNEL, NOW = "robosync_kernel", "robosync::kernel::Kernel::now("
 THUMB, CHANGED_BY_A_CALL = 1, (0, 1, 2, 3, 12, LINK_REGISTER)
 INSTRUCTION_NS = 1 << int(re.match(r"shift=(\d+)", FAST)[1])
 SESSION = 1
 PIECE = 200  # bytes of an image
-ATTEMPTS, SOON = 60, 1  # seconds until it is asked again
+ATTEMPTS, SOON = 60, 1  # attempts; seconds between them
 
 
 class BoardOnAFile:
-    """From its power-up to the end of the `with` block. Its line ends in a file, and begins in a FIFO."""
+    """A board from power-up to the end of the `with` block. It writes its line to a file, and reads it from a FIFO."""
 
     def __init__(self, folder, store, extra=()):
-        """`folder`: of its own."""
+        """`folder`: for this board only."""
         folder.mkdir()
         self._said, heard = folder / "said", folder / "heard"
         os.mkfifo(heard)
@@ -55,19 +55,20 @@ class BoardOnAFile:
         self._stack.close()
 
     def say(self, data):
-        """Until it is taken."""
+        """Sends the bytes; returns when the board has taken them."""
         os.write(self._to_board, data)
         wait_until(lambda: not any(fcntl.ioctl(self._to_board, termios.FIONREAD, bytes(4))), "takes what it is sent")
 
     def messages(self, wanted):
-        """The payloads of those that it has sent."""
+        """The payloads of the messages of this kind that the board has sent."""
         *whole, _ = self._said.read_bytes().split(b"\0")
         contents = filter(None, map(wire.uncobs, whole))
         return [content[2:-2] for content in contents if wire.NAMES[content[0]] == wanted]
 
 
 class FedBoard(BoardOnAFile):
-    """Takes a program, at whatever pace: what it keeps is the same. Not by rsc, which gives a board up that a debugger holds up."""
+    """Takes a program, at any pace: what it keeps is the same. Does not use rsc, which gives up on a board that a
+    debugger halts."""
 
     def __init__(self, folder, store):
         gdb = folder / "gdb"
@@ -76,7 +77,7 @@ class FedBoard(BoardOnAFile):
             self._flash = player.FlashPlayer(gdb)
 
     def ask(self, name, payload, reply):
-        """As often as it takes: who has not started yet hears nothing."""
+        """Repeats the request until it is answered, because a board that has not started yet receives nothing."""
         before = len(self.messages(reply))
         for _ in range(ATTEMPTS):
             self.say(wire.frame(name, payload))
@@ -99,7 +100,7 @@ class FedBoard(BoardOnAFile):
 
 
 class TouchedBoard(BoardOnAFile):
-    """Its sensor is played as soon as somebody gives a reading."""
+    """Its sensor is played from the first touch on."""
 
     def __init__(self, folder, store, extra=()):
         gdb = folder / "gdb"
@@ -113,7 +114,7 @@ class TouchedBoard(BoardOnAFile):
         self._player.run_to(place, lambda: None)
 
     def uptime_us(self):
-        """What the kernel's clock says. It is asked where a function of a thread begins, which does not notice."""
+        """The time on the kernel's clock. Call it at the start of a thread's function; the thread is not affected."""
         core = self._player.core()
         for register, value in ((0, symbols(FIRMWARE)[KERNEL]), (LINK_REGISTER, core[PC] | THUMB), (PC, functions(NOW)[NOW])):
             self._player.set_register(register, value)
@@ -129,7 +130,7 @@ class TouchedBoard(BoardOnAFile):
         self._raw = raw
 
     def give(self):
-        """Until the sensor has given the touch as a reading."""
+        """Runs until the sensor has delivered the touch as a reading."""
         self._caller = 0
         while not self._sample[0] <= self._caller < self._sample[1]:
             if self._player.play_next() is None:
@@ -142,7 +143,7 @@ class TouchedBoard(BoardOnAFile):
 
 
 def debugged(place):
-    """How QEMU is told to wait for a debugger before the first instruction."""
+    """QEMU's arguments to wait for a debugger before the first instruction."""
     return ["-gdb", f"unix:{place},server=on,wait=off", "-S"]
 
 
@@ -159,7 +160,7 @@ def wait_until(condition, what, patience=PATIENCE):
 
 
 def store_with(image, folder):
-    """The file in which a board has kept that program, in a folder of its own."""
+    """The store file of a board that has kept that program, in its own folder."""
     with FedBoard(folder, folder / "store") as board:
         board.take(image.read_bytes())
         wait_until(board.keeps, "keeps its program")

@@ -1,7 +1,7 @@
-"""scripts/bench --profile NAME: what ran while a figure was counted, function by function.
+"""scripts/bench --profile NAME: shows what ran while a figure was counted, function by function.
 
-A figure that is counted between two marks knows which instructions ran (counting.Count). Here they are added up by the
-functions of the ELF, and by those of the source: most of these are inlined.
+A figure that is counted between two marks knows which instructions ran (counting.Count). They are added up by the
+functions of the ELF, and by those of the source, because most of these are inlined.
 """
 
 import bisect
@@ -15,7 +15,7 @@ import safety
 import workloads
 from board import FIRMWARE
 
-# Whose figures are counted between marks, and the ELF that runs then.
+# The groups whose figures are counted between marks, and the ELF that runs.
 GROUPS = ((growth.growth_figures, growth.FIRMWARE), (path.path_figures, FIRMWARE), (safety.calm_figures, FIRMWARE),
           (safety.loaded_figures, FIRMWARE),
           (workloads.workload_figures, counting.BUILT / "bench_workload"),
@@ -23,7 +23,7 @@ GROUPS = ((growth.growth_figures, growth.FIRMWARE), (path.path_figures, FIRMWARE
 
 
 def find(name):
-    """(the figure's value, the ELF that ran)"""
+    """Returns (the figure's value, the ELF that ran)."""
     counting.profiling = True
     for figures, elf in GROUPS:
         value, _ = figures().get(name, (None, None))

@@ -1,7 +1,7 @@
-"""What was counted last time (recorded.json), so that nothing grows unnoticed under its bar.
+"""The last recorded counts (recorded.json), so that no figure grows unnoticed below its bar.
 
-Only counted figures are recorded: instructions and bytes are the same on every machine. Times are
-not, and are never compared.
+Only counted figures are recorded: instructions and bytes are the same on every machine. Times are not, and are never
+compared.
 """
 
 import json
@@ -9,13 +9,13 @@ from pathlib import Path
 
 FILE = Path(__file__).parent / "recorded.json"
 TOLERANCE = 0.02
-# Counted on a board that talks with this machine: when a touch comes, and what is due in the same moment, is another
-# thing each time. Of a way on which no byte of the line comes in between, by little.
+# Counted on a board that talks with this machine: the time of a touch, and what is due at the same moment, differ in
+# each run. On a path without bytes from the line in between, they differ little.
 IN_REAL_TIME = {"safety/reading_to_safe": 0.5, "safety/stop_frame_to_safe": 0.5,
                 "path/reading_to_command": 0.05, "path/follow_update": 0.05, "vm/W1_queue": 0.05, "vm/W3_staged": 0.05,
                 "firmware/power_up_to_program": 1, "link/answer": 1}
-TIMES = {"ms", "lines/s"}  # units of what depends on how fast the machine is
-NOT_EXACT = TIMES | {"x"}  # … and of what is another number each time
+TIMES = {"ms", "lines/s"}  # units that depend on the speed of the machine
+NOT_EXACT = TIMES | {"x"}  # … and of figures that differ in each run
 
 
 def is_counted(figure):
@@ -31,14 +31,14 @@ def load(path=FILE):
 
 
 def save(figures, path=FILE, before=()):
-    """`before` stays where no figure has its name."""
+    """`before`: older values, kept for names that no figure has."""
     counted = {**dict(before), **{figure["name"]: figure["value"] for figure in figures if is_counted(figure)}}
     Path(path).write_text(json.dumps(counted, indent=2, sort_keys=True) + "\n")
 
 
 class Comparison:
-    """Holds figures against recorded ones; while recording there are none, and None is given.
-    `grown` and `shrunk` are messages for people."""
+    """Compares figures with recorded ones. While recording there are none: pass None. `grown` and `shrunk` are messages
+    for people."""
 
     def __init__(self, recorded):
         self._recorded = recorded
@@ -47,7 +47,7 @@ class Comparison:
         self.shrunk = []
 
     def add(self, figure):
-        """False when this one grew, or was never recorded."""
+        """Returns False if this figure grew, or was never recorded."""
         if self._recorded is None or not is_counted(figure):
             return True
         name, now, unit = figure["name"], figure["value"], figure["unit"]
@@ -66,9 +66,9 @@ class Comparison:
         return True
 
     def before(self, figure):
-        """What was recorded; while recording, what is there now."""
+        """The recorded value; while recording, the current one."""
         return figure["value"] if self._recorded is None else self._recorded.get(figure["name"])
 
     def missing(self):
-        """Recorded figures that nothing measures any more."""
+        """Recorded figures that are no longer measured."""
         return sorted((self._recorded or {}).keys() - self._seen)

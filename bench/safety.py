@@ -1,18 +1,18 @@
-"""How fast the shipped firmware comes to rest, isolation on, and what the output guard costs.
+"""How fast the shipped firmware reaches its safe state, with isolation on, and what the output guard costs.
 
-safety/reading_to_safe     from the reading that trips a SAFETY rule in its mailbox, until the guard has shut the pins of all
-                           actuators and put them into their safe state
-safety/stop_frame_to_safe  from the interrupt with the last byte of rsc's `stop` to the same
-safety/guard_per_command   instructions in the guard, and in what drives the pin, for one order of a driver
+safety/reading_to_safe     from the reading in its mailbox that trips a SAFETY rule, until the guard has shut the pins
+                           of all actuators and put them into their safe state
+safety/stop_frame_to_safe  from the interrupt with the last byte of rsc's `stop` to the same point
+safety/guard_per_command   instructions in the guard, and in the code that drives the pin, for one order of a driver
 
-The arms are moving; everything that comes in between counts, interrupts too. The most of several times is the figure.
-The first two are counted once more, as …_loaded: beside 40 threads with work to do, 36 of them behaviours that compute in
-two thirds of the time, while an upload is under way that floods the link, and the stop comes in its midst.
+The arms are moving. Everything in between counts, including interrupts. The figure is the worst of several times. The
+first two are counted again as …_loaded: with 40 busy threads, 36 of them behaviours that compute for two thirds of the
+time, during an upload that floods the link; the stop arrives in the middle of it.
 
-The emulated line has the bytes of a handful at once. A real one has one each way in the time of 2,170 instructions. So
-what the line's interrupts took is taken off, and for …_loaded one of each way is put on again that has one byte to take or
-to send: the worst that can fall into so short a time, whether or not it did. An interrupt that sees a stop is counted where
-it took least: there it had no other byte to take.
+The emulated line delivers the bytes of a handful together. A real one carries one byte each way in the time of 2,170
+instructions. So the time of the line's interrupts is subtracted. For …_loaded, one receive and one transmit interrupt
+with one byte each are added back: the worst case in so short a time, whether or not they occurred. An interrupt that
+sees a stop counts with its least time: that is the one in which it had no other byte to take.
 """
 
 import tempfile
@@ -34,8 +34,8 @@ ORDER = "robosync::guard::OutputGuard::drive("
 SHUT = "robosync::guard::OutputGuard::halt("
 PIN = "Board::pwm_write("  # of the board
 TIMES = 20
-BURST = 16  # bytes that an interrupt moves at most (runtime-m4/boards/common/serial_line.hpp)
-ROBOTS_TIME = "shift=5,sleep=off"  # else a busy host holds the board up until its watchdog strikes
+BURST = 16  # the most bytes that one interrupt moves (runtime-m4/boards/common/serial_line.hpp)
+ROBOTS_TIME = "shift=5,sleep=off"  # otherwise, on a busy host, the watchdog would reset the board
 LIGHT, FIRM, TOO_FIRM = 1, 5, 9
 BETWEEN = 6  # readings, 120 ms
 CONFIG = """{
@@ -59,7 +59,7 @@ END
 """
 BUSY_BEHAVIORS = 36
 BUSY_THREADS = BUSY_BEHAVIORS + 4  # sensor, arms, link
-# What is raised and lowered is what it was, so nothing follows from it. `rsc check` cannot know: hence --anyway.
+# RAISE and LOWER cancel out, so nothing follows from them. `rsc check` cannot know that: hence --anyway.
 LOAD = "REMEMBER n = 0\n" + "".join(f"""
 BEHAVIOR busy{i} PRIORITY {i + 1}
   EVERY 10ms
@@ -79,7 +79,7 @@ def lines_of(path):
 
 
 class Person:
-    """Stops the robot and lets it go on, by rsc."""
+    """Stops the robot and resumes it, with rsc."""
 
     lonely = None
 
@@ -97,7 +97,7 @@ class Person:
 
 
 class PersonInAFlood:
-    """… on a line that somebody floods."""
+    """The same, on a line that is being flooded."""
 
     def __init__(self, board, marks):
         threads = rsc.info(board.port)["threads"]
@@ -108,7 +108,7 @@ class PersonInAFlood:
         for _ in range(TIMES):
             self.flood.send_raw(b"\0")
             wait_for_readings(marks, 1)
-        self.lonely = begin, lines_of(marks) - 1  # marks among which bytes came one by one
+        self.lonely = begin, lines_of(marks) - 1  # marks between which bytes came one by one
         self.flood.start()
 
     def stop(self):
@@ -125,7 +125,7 @@ class PersonInAFlood:
 
 
 def drive(board, image, pause, person_at):
-    """Trips TIMES times with moving arms, then is stopped by a person as often: gives the person."""
+    """Trips TIMES times with moving arms, then has a person stop it as often. Returns the person."""
     def touch(raw):
         board.set_touch(raw)
         pause()
@@ -148,8 +148,9 @@ def drive(board, image, pause, person_at):
 
 
 def shuts(marks):
-    """Of each time that the pins were shut: from the reading, or from the end of the interrupt that said stop, until that was
-    done, without the line's interrupts. Who shuts them once more right away finds it done."""
+    """For each time that the pins were shut: instructions from the reading, or from the end of the interrupt that
+    received the stop, until they were shut, without the line's interrupts. A second shutdown right afterwards does not
+    count."""
     stops, begin, found = {end for _, end in stop_interrupts(marks)}, None, []
     for i, (name, _) in enumerate(marks.all):
         if name == READING or i in stops:
@@ -163,7 +164,7 @@ def shuts(marks):
 
 
 def stop_interrupts(marks):
-    """[(begin, end)] of those that saw a stop."""
+    """[(begin, end)] of the interrupts that saw a stop."""
     found, begin, said = [], None, False
     for i, (name, _) in enumerate(marks.all):
         if name == BYTE:
@@ -182,7 +183,7 @@ def executed(marks, begin, end):
 
 
 def spans(marks, interrupt, begin=0, end=None):
-    """What each of these interrupts took that has begun in between."""
+    """The instructions of each of these interrupts that began in the range."""
     found, since = [], None
     for i in range(begin, len(marks.all) if end is None else end + 1):
         name = marks.all[i][0]
@@ -195,20 +196,20 @@ def spans(marks, interrupt, begin=0, end=None):
 
 
 def of_a_stop(marks):
-    """What the interrupt takes that sees a stop."""
+    """The least time of an interrupt that sees a stop."""
     return min(int(executed(marks, *interrupt)) for interrupt in stop_interrupts(marks))
 
 
 def of_the_line(marks, lonely):
-    """One interrupt that takes a byte, and wakes who waits for it: the bytes that came by themselves say. And one that sends
-    a byte: what follows from the one that had the least to do, and the one that had the most."""
+    """One interrupt that takes a byte and wakes the thread that waits for it, measured with single bytes; plus one that
+    sends a byte, calculated from the shortest and the longest transmit interrupt."""
     first, last = lonely
     sent = spans(marks, SENT)
     return max(spans(marks, BYTE, first, last)) + min(sent) + -(-(max(sent) - min(sent)) // BURST)
 
 
 def most_in_the_guard(marks):
-    """Of the orders: what the code that was counted apart has executed until the next mark."""
+    """The worst of the orders: what the code that is counted apart executed until the next mark."""
     orders = [after - before for (name, _), before, after in zip(marks.all, marks.apart, marks.apart[1:])
               if name == ORDER]
     if not orders:
@@ -247,7 +248,7 @@ def calm_figures():
 
 def loaded_figures():
     figures = figures_of("_loaded", PROGRAM + LOAD, PersonInAFlood)
-    del figures["safety/guard_per_command_loaded"]  # the same: it counts nothing else
+    del figures["safety/guard_per_command_loaded"]  # the same as without load: nothing else is counted
     return figures
 
 

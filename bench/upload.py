@@ -1,8 +1,8 @@
-"""What an upload takes over a line of 115,200 baud: from calling `rsc upload robot.rsl`, its start and the compilation included,
-to the first step of the new program.
+"""How long an upload takes over a line of 115,200 baud: from the call of `rsc upload robot.rsl`, including its start
+and the compilation, to the first step of the new program.
 
-The emulator paces nothing, so a tap stands between (tap.py); when the program began, the board says by its own clock, which
-follows the host's. All of it in real time: on a machine that does something else meanwhile, it takes longer.
+The emulator does not pace the line, so a tap in between does (tap.py). The board reports by its own clock, which
+follows the host's, when the program began. Everything runs in real time: on a busy machine it takes longer.
 """
 
 import os
@@ -29,7 +29,8 @@ ROBOT = """{"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"
 
 
 class Line:
-    """A board behind a paced line, and an rsc that has never seen it. `forget()`: nor the program that it runs."""
+    """A board behind a paced line, and an rsc that has never seen it. After `forget()` it does not know the board's
+    program either."""
 
     def __init__(self, folder):
         self._cache = Path(folder) / "cache"
@@ -42,10 +43,10 @@ class Line:
             file.unlink()
 
     def upload(self, program):
-        """Milliseconds until its first step."""
+        """Returns the milliseconds until the program's first step."""
         begun = time.monotonic()
         rsc.run("upload", program, "--port", self.tap.port, "--anyway")
-        time.sleep(0.05)  # the tap lets go of the board's socket
+        time.sleep(0.05)  # until the tap releases the board's socket
         with wire.Line(self._board.port) as line:
             asked = time.monotonic()
             program_us = line.status().program_us
@@ -61,7 +62,7 @@ class Line:
 
 
 def large_program(folder):
-    """Rules with numbers that nobody can guess."""
+    """Rules with random numbers."""
     drawn = random.Random(16)
     path = Path(folder) / "large.rsl"
     path.with_suffix(".json").write_text(ROBOT)

@@ -1,6 +1,6 @@
 /* usage PROGRAM ARGUMENT…: runs it without input and output, and prints what it used: microseconds of CPU,
-   KiB of memory at most, its exit code. A process begins with the memory of the one that starts it, so that
-   one must be small: Python, for instance, is larger than what is measured. */
+   peak memory in KiB, its exit code. A process starts with the memory of its parent, so the parent must be small:
+   Python, for instance, is larger than what is measured. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-"""The workloads W1 to W3 (bench/programs; W1 is the paper's program): what they cost, run by the
-shipped interpreter, and whether they come to what the same in Python comes to."""
+"""The workloads W1 to W3 (bench/programs; W1 is the paper's program): what they cost in the shipped interpreter, and
+whether their results match the same computation in Python."""
 
 import random
 import re
@@ -18,14 +18,14 @@ NEAR, FAR = 500_000, 600_000  # thousandths of a millimetre: 50cm, 60cm
 SAMPLES = 8
 MOST_SAMPLES = 32  # vm::kMaxWindow
 
-# A person comes nearer, turns round between the two limits, goes away, and comes back at once.
+# A person comes closer, turns round between the two limits, goes away, and comes straight back.
 DISTANCES = tuple(1000 * mm for mm in (
     *range(900, 380, -40), *[470] * 6, 555, *[590] * 9, 610, 601, *[599, 620] * 5, *[1234] * 4,
     *[333] * 9, 20, 4000, 501, 499))
 
 
 class Workload:
-    """A program, compiled as users do, and its first rule run once for each reading."""
+    """A program, compiled as users do it. Its first rule runs once for each reading."""
 
     def __init__(self, folder, source, readings):
         image = Path(folder) / f"{source.parent.name}.rsb"
@@ -53,7 +53,7 @@ class Workload:
 
 
 def expect(what, wanted, got):
-    """A workload that comes to something else has not done the work that is measured."""
+    """Raises if a workload has another result, because then it has not done the work that is measured."""
     if wanted != got:
         raise BenchError(f"{what} came to {got}, not to {wanted}")
 
@@ -118,8 +118,7 @@ def w3_natural(folder, readings=DISTANCES, window=SAMPLES):
 
 
 def smooth_readings():
-    """In every order of size that moves much in a window: one that rises, that falls, that does both, that
-    stands still, any."""
+    """Series that move the values in a window in every way: rising, falling, both, constant, and random."""
     random_ = random.Random(1)
     rising = [1000 * mm for mm in range(100, 1000, 9)]
     return (*rising, *reversed(rising), *[500_000] * MOST_SAMPLES, *rising[::3], *rising[::-3],
@@ -136,7 +135,7 @@ def workload_figures():
     with tempfile.TemporaryDirectory() as folder:
         one, two, three = w1(folder), w2(folder), w3(folder)
     per_round = two.spans[0] / ROUNDS
-    opcodes = two.number(r"\bagain +r\d+, -(\d+)")  # from there back: the loop has no branches
+    opcodes = two.number(r"\bagain +r\d+, -(\d+)")  # the jump back: the loop has no branches
     verify = one.marks.spans("mark_verify_begin", "mark_verify_end")[0]
     works = {"W1": one, "W2": two, "W3": three}
     return {

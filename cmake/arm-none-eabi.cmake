@@ -6,13 +6,13 @@ set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
 set(CMAKE_ASM_COMPILER arm-none-eabi-gcc)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
-# soft: the product computes in integers, and the compiler would move those by the FPU's registers, which a thread that has used
-# them must have saved at each switch. What is linked to it may use the FPU (softfp).
+# soft: the product computes in integers. Otherwise the compiler would move them through FPU registers, which must be saved
+# at each context switch once a thread has used them. Code that is linked to it may use the FPU (softfp).
 set(m4_flags "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=soft -ffunction-sections -fdata-sections")
 set(CMAKE_C_FLAGS_INIT "${m4_flags}")
 set(CMAKE_ASM_FLAGS_INIT "${m4_flags}")
 set(CMAKE_CXX_FLAGS_INIT
     "${m4_flags} -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -fno-unwind-tables -fno-asynchronous-unwind-tables")
-# Code size is the default on the board; the files on the hot path ask for -O2 themselves.
+# Optimises for size by default on the board; files on the hot path set -O2 themselves.
 set(CMAKE_CXX_FLAGS_RELEASE "-Os -g" CACHE STRING "")
 set(CMAKE_C_FLAGS_RELEASE "-Os -g" CACHE STRING "")

@@ -1,5 +1,5 @@
-# For those who embed the compiler: cmake --install build/host --prefix FOLDER --component embed, and in their own
-# CMakeLists.txt find_package(RoboSync) and target_link_libraries(… RoboSync::compiler). tests/package/embed does so.
+# For programs that embed the compiler: cmake --install build/host --prefix FOLDER --component embed, and in their own
+# CMakeLists.txt find_package(RoboSync) and target_link_libraries(… RoboSync::compiler). See tests/package/embed.
 include(CMakePackageConfigHelpers)
 
 set(packages lib/cmake/RoboSync)
@@ -14,7 +14,7 @@ install(DIRECTORY compiler vm DESTINATION include/robosync COMPONENT embed
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/RoboSyncConfig.cmake.in
                               ${CMAKE_CURRENT_BINARY_DIR}/RoboSyncConfig.cmake INSTALL_DESTINATION ${packages})
-# Until 1.0 each version may change what a program that embeds the compiler calls.
+# Until 1.0, each version may change the interface for programs that embed the compiler.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/RoboSyncConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/RoboSyncConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/RoboSyncConfigVersion.cmake
         DESTINATION ${packages} COMPONENT embed)

@@ -1,4 +1,4 @@
-# The package for Debian (scripts/package): the tool, what is beside it for its users, and the boards' firmware.
+# The Debian package (scripts/package): the tool, the files that come with it for users, and the boards' firmware.
 set(doc share/doc/robosync)
 install(FILES README.md LICENSE NOTICE DESTINATION ${doc} COMPONENT tool)
 install(DIRECTORY docs/ DESTINATION ${doc}/docs COMPONENT tool FILES_MATCHING PATTERN "*.md")
@@ -18,6 +18,6 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libsndfile1, libmosquitto1")  # loaded when they are needed
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libsndfile1, libmosquitto1")  # loaded when needed
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "openocd, qemu-system-arm")
 include(CPack)

@@ -1,4 +1,5 @@
-# The packages for Debian of what hears and sees (scripts/companion --package), one a module: each needs its libraries alone.
+# The Debian packages of the programs that hear and see (scripts/companion --package), one per module, because each
+# needs only its own libraries.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME robosync-companion)
 set(CPACK_PACKAGE_CONTACT "The RoboSync project")

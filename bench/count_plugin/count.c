@@ -1,16 +1,16 @@
-/* QEMU TCG plugin: counts executed instructions, and writes the count down at each marker.
+/* QEMU TCG plugin: counts executed instructions, and writes the count to a file at each marker.
  *
  *   -plugin libcount.so,out=FILE,mark=0xADDRESS[,mark=…][,apart=0xBEGIN-0xEND…][,profile=on]
  *
  * FILE gets one line "ADDRESS COUNT APART" each time the instruction at a marker is about to run;
- * COUNT is the number of instructions that ran before it, without those that stand between a BEGIN
- * and its END: these are APART. The difference of two lines is therefore exact. With profile=on the line goes on with
- * " ADDRESS:COUNT" for each instruction that ran since the line before: where it stands, and how often it did.
- * Assumes one CPU. An instruction that an exception breaks off and that starts again counts twice.
+ * COUNT is the number of instructions that ran before it, without those between a BEGIN and its
+ * END, which are in APART. The difference of two lines is therefore exact. With profile=on the line continues with
+ * " ADDRESS:COUNT" for each instruction that ran since the line before: its address, and how often it ran.
+ * Assumes one CPU. An instruction that an exception aborts and that restarts counts twice.
  *
- * Debian does not package qemu-plugin.h, so the few functions used are declared here. QEMU 7.2 (API version 1) adds to any
- * number in memory; QEMU 9 and newer (API version 2 on) only to one on a scoreboard, which has one of them for each CPU. What a
- * QEMU has not stays null.
+ * Debian does not package qemu-plugin.h, so the few functions used are declared here. QEMU 7.2 (API version 1) can add to any
+ * number in memory; QEMU 9 and newer (API version 2 on) only to one on a scoreboard, which has one for each CPU. Functions
+ * that a QEMU does not have stay null.
  */
 #include <inttypes.h>
 #include <stdbool.h>
@@ -52,7 +52,7 @@ void qemu_plugin_register_atexit_cb(plugin_id id, void (*callback)(plugin_id, vo
 #define EXPORT __attribute__((visibility("default")))
 EXPORT int qemu_plugin_version = 1;
 
-// Read by QEMU before it calls anything here.
+// QEMU reads the version before it calls anything here.
 __attribute__((constructor)) static void choose_version(void) {
   if (qemu_plugin_scoreboard_new) qemu_plugin_version = 2;
 }
@@ -69,7 +69,7 @@ static size_t place_count;
 static struct qemu_plugin_scoreboard* board;
 static struct counters { uint64_t executed, apart, at_place[]; } * counters;
 
-// Once there is a CPU.
+// Must run after the CPU exists.
 static void make_counters(void) {
   size_t bytes = sizeof(struct counters) + (profiles ? sizeof places : 0);
   if (qemu_plugin_scoreboard_new) {
@@ -100,10 +100,10 @@ static void at_marker(unsigned cpu, void* marker) {
           counters->apart);
   write_profile();
   fputc('\n', out);
-  fflush(out);  // the bench waits for what it says
+  fflush(out);  // the bench waits for this line
 }
 
-/* An instruction may be translated more than once: each time it has another place. */
+/* An instruction may be translated more than once; it gets a new place each time. */
 static uint64_t* new_place(uint64_t address) {
   if (!profiles || place_count == MAX_PLACES) return NULL;
   places[place_count] = address;

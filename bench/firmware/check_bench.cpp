@@ -1,5 +1,5 @@
-// Runs the runtime's CHECKs over given readings between markers: W3 as a user of RSL writes it. One
-// reading a sample; after each it says which band the first CHECK is in.
+// Runs the runtime's CHECKs over given readings between markers: W3 as an RSL author would write it. Each sample has one reading;
+// after each, prints the band of the first CHECK.
 #include <array>
 
 #include "bench/firmware/driven.hpp"
@@ -29,7 +29,7 @@ void measure(const vm::Image& image) {
     now += check.sample_ms;
     values[check.input] = reading;
     bool changed = false;
-    // One that is like the reading before it is a sample when its millisecond is over.
+    // A reading equal to the one before becomes a sample when its millisecond is over.
     for (const std::uint32_t at : {now, now + 1}) {
       BENCH_MARK(check_begin);
       changed |= checks.update(0, at, values);

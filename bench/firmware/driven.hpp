@@ -1,7 +1,6 @@
-// For firmware that drives a whole runtime from inside, as nothing outside could do as exactly: a
-// given image is activated, and a thread of the lowest rank, as the link has in the firmware, feeds
-// it. So when that thread comes back from feeding, the step is over, and everything that came of it
-// is done.
+// For firmware that drives a whole runtime from inside, more exactly than anything outside could. It activates a given image. A
+// thread of the lowest rank, like the link's in the firmware, feeds the runtime: when a call that feeds it returns, the step and
+// all its consequences are complete.
 //
 // The firmware defines robosync_kernel, the runtime, and start().
 #pragma once
@@ -14,18 +13,18 @@
 
 namespace robosync::bench {
 
-// The memory for programs that `board` says, where it says.
+// The memory for programs that `board` specifies.
 inline std::span<std::byte> arena_at(const policy::BoardMemory& board) {
   return {reinterpret_cast<std::byte*>(board.arena_begin), board.arena_bytes};
 }
 
-// Called by main(), before the kernel runs: start_driven() with its runtime.
+// main() calls it before the kernel runs; it calls start_driven() with its runtime.
 bool start();
 
 // Starts the runtime and the thread that drives it.
 [[nodiscard]] bool start_driven(Runtime& runtime, void (*drive)(void*));
 
-// Says why, and leaves, when the image is refused.
+// If the image was refused, prints why and exits.
 void check(const vm::Verdict& verdict);
 
 }  // namespace robosync::bench

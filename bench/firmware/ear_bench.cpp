@@ -1,5 +1,5 @@
-// The ear, block by block, between markers: tones of all pitches that it knows, among noise. It has to find most of them, so that what is
-// counted is not the way out of a silence.
+// Runs the ear block by block between markers: tones of all pitches that it knows, with noise. It must find most of them, so that
+// the count is not that of the early return for silence.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ drivers::Ear ear;
 std::array<std::int16_t, drivers::kEarBlock> block;
 std::uint32_t random = 1;
 
-// A saw of that many samples a tooth.
+// A sawtooth with a period of this many samples, plus noise.
 void fill(std::int32_t period) {
   static std::int32_t at = 0;
   for (std::int16_t& sample : block) {

@@ -1,5 +1,5 @@
-// What bench/counting.py gives a bench firmware: an image and readings, which QEMU's loader has put
-// into RAM beside the firmware before it starts.
+// The input of a bench firmware from bench/counting.py: an image and readings, which QEMU's loader places in RAM next to the
+// firmware before it starts.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ inline std::span<const std::byte> given_image() {
   return {bytes, header.total_length};
 }
 
-// Their number stands before them.
+// The count precedes the readings.
 inline std::span<const vm::Value> given_readings() {
   const auto* const words = reinterpret_cast<const vm::Value*>(kReadingsAddress);
   return {words + 1, static_cast<std::size_t>(words[0])};

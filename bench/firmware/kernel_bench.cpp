@@ -1,7 +1,7 @@
-// Runs the shipped kernel between markers: a thread of low rank wakes one of high rank, by itself
-// and from an interrupt, with and without a deadline, lets it run that is ready already, takes a
-// mutex, spins while the tick comes and sleeps; sends it a reading through a mailbox; then the woken one is without privileges ("open"),
-// and two such take turns. Among 7, 16 and 64 threads, all others of which sleep.
+// Runs the shipped kernel between markers. A thread of low rank wakes one of high rank, itself and from an interrupt, with and
+// without a deadline; yields to one that is already ready; takes a mutex; spins while the tick comes; sleeps; and sends a reading
+// through a mailbox. Then the same with a woken thread that is unprivileged ("open"), and two such threads that take turns. There
+// are 7, 16 and 64 threads, and all others sleep.
 //
 // bench/figures.py reads the counts.
 #include <array>
@@ -93,7 +93,7 @@ void run_open(void*) {
   }
 }
 
-// Turns are taken by reports: the upper one waits for them.
+// The threads take turns by reports: the upper one waits for them.
 void run_upper(void*) {
   while (true)
     (void)kernel::calls::wait(robosync_kernel, kGo);
@@ -106,7 +106,7 @@ void run_lower(void*) {
   }
 }
 
-// As run_high, but each time it arms a deadline, and takes it back.
+// As run_high, but arms a deadline each time, and cancels it.
 void run_timed(void*) {
   while (true) {
     const kernel::Time deadline = robosync_kernel.now() + kernel::milliseconds(1000);
@@ -116,8 +116,7 @@ void run_timed(void*) {
   }
 }
 
-// Each for another time, so that the buckets of all wheels are in use; when called, until one they
-// have in common.
+// Each thread sleeps until a different time, so that the buckets of all wheels are in use; when signalled, until a common one.
 void sleep_forever(void* self) {
   const auto number = static_cast<std::uint32_t>(static_cast<Task*>(self) - tasks.data());
   while (true) {
@@ -133,7 +132,7 @@ void post() {
   BENCH_MARK(low_runs);
 }
 
-// As the step thread takes what a sensor's thread announces.
+// Takes a reading as the step thread does when a sensor's thread announces it.
 void run_reader(void*) {
   vm::Value read = 0;
   while (true) {
@@ -144,14 +143,14 @@ void run_reader(void*) {
   }
 }
 
-// A layers::Reading, which only the sensor layer may make.
+// The layout of layers::Reading, which only the sensor layer may create.
 struct RawReading {
   kernel::Time time;
   vm::Value value;
   std::uint8_t channel;
 };
 
-// Of one channel.
+// Mailboxes for one channel.
 void start_mailboxes() {
   policy::Needs needs;
   needs.counts[policy::Count::channels] = 1;
@@ -176,8 +175,8 @@ void pend() {
   BENCH_MARK(low_runs_after_interrupt);
 }
 
-// Both are ready, and the one that runs lets the other one run. Where no two threads have the same
-// rank, that is the end of a lock under which a higher one has become ready.
+// Both threads are ready, and the running one yields to the other. As no two threads have the same rank, that is the end of a
+// lock under which a higher one has become ready.
 [[gnu::noinline]] void yield_to(kernel::Thread& thread) {
   const auto lock = robosync_kernel.lock();
   robosync_kernel.signal(thread, kGo);
@@ -216,7 +215,7 @@ void sleep_a_tick() {
   BENCH_MARK(sleeper_runs);
 }
 
-// 1 + 2 × 1,000,000 instructions between the markers, plus what the ticks that come meanwhile take.
+// 1 + 2 × 1,000,000 instructions between the markers, plus those of the ticks in the meantime.
 void spin() {
   unsigned rounds = 1'000'000;
   asm volatile(
@@ -257,8 +256,7 @@ void spin() {
   BENCH_MARK(measured);
 }
 
-// Of 58 sleepers one that stands in the middle goes to and fro past another: the least change that
-// changes the order.
+// Of 58 sleepers, one in the middle moves back and forth past another: the smallest change of the order.
 void change_priority() {
   kernel::Thread& other = tasks[30].thread;
   kernel::Thread& thread = tasks[31].thread;
@@ -272,7 +270,7 @@ void change_priority() {
   }
 }
 
-// No thread has anything to do but the one that waits up to a second each time.
+// No thread has anything to do except this one, which waits up to a second each time.
 [[gnu::noinline]] void idle() {
   BENCH_MARK(idle);
   robosync_kernel.sleep_until(robosync_kernel.now() + kernel::milliseconds(1000));

@@ -1,5 +1,5 @@
-// How a bench firmware speaks to scripts/bench: QEMU is started with -semihosting, and prints what
-// is said. A breakpoint with a number in r0 asks for a service.
+// Output of a bench firmware to scripts/bench: QEMU, started with -semihosting, prints it. A breakpoint with a number in r0
+// requests a service.
 #include <array>
 #include <charconv>
 

@@ -1,5 +1,5 @@
-// Vector tables and reset of the bench firmware. QEMU loads the ELF as it runs (bare.ld) into
-// memory of zeros, so there is nothing to copy or clear. A fault ends the measurement as failed.
+// Vector tables and reset of the bench firmware. QEMU loads the ELF at its run addresses (bare.ld) into zeroed memory, so there
+// is nothing to copy or clear. After a fault, the measurement has failed.
 #include <cstdint>
 
 #include "bench/firmware/mark.hpp"
@@ -16,7 +16,7 @@ void fault() {
   robosync::bench::leave(false);
 }
 
-// The kernel's port and the fuzzer's sandbox bring their own.
+// The kernel's port and the fuzzer's sandbox define their own.
 [[gnu::weak, gnu::alias("fault")]] void HardFault_Handler();
 [[gnu::weak, gnu::alias("fault")]] void MemManage_Handler();
 [[gnu::weak, gnu::alias("fault")]] void BusFault_Handler();
@@ -38,7 +38,7 @@ struct Vectors {
     {reset, fault, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
      fault, fault, fault, fault, SVC_Handler, fault, fault, PendSV_Handler, SysTick_Handler,
      bench_interrupt}};
-// While a thread without privileges runs (port/cortex-m4/switch.S).
+// In use while an unprivileged thread runs (port/cortex-m4/switch.S).
 [[gnu::section(".vectors.1"), gnu::used,
   gnu::aligned(256)]] extern const Vectors robosync_unprivileged_vectors = {
     &stack_top,
@@ -47,11 +47,11 @@ struct Vectors {
      SysTick_Handler, bench_interrupt}};
 
 void reset() {
-  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xF00000;  // CPACR: the FPU may be used
-  // As the board's reset does: the kernel's interrupts are held off until it runs.
+  *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88) |= 0xF00000;  // CPACR: enables the FPU
+  // As in the board's reset: the kernel's interrupts are masked until it runs.
   *reinterpret_cast<volatile std::uint32_t*>(0xE000ED20) = 0xFFFF0000;  // SHPR3: SysTick, PendSV
   asm volatile("dsb\n\tisb\n\tmsr basepri, %0" ::"r"(0x40) : "memory");
-  // … and the clock that times threads and counts ticks, timer 1, begins to count down.
+  // … and timer 1, the clock that times threads and counts ticks, starts to count down.
   *reinterpret_cast<volatile std::uint32_t*>(0x40001008) = ~std::uint32_t{0};  // reload
   *reinterpret_cast<volatile std::uint32_t*>(0x40001004) = ~std::uint32_t{0};  // value
   *reinterpret_cast<volatile std::uint32_t*>(0x40001000) = 1;                  // control: on

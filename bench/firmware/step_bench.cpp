@@ -1,6 +1,5 @@
-// The whole runtime of a board, as the firmware has it, but driven from inside (driven.hpp): after
-// a first reading of each channel, given ones of channel 0 are fed, between markers. For
-// bench/growth.py, which compares how many rules fired.
+// The whole runtime of a board, as in the firmware, but driven from inside (driven.hpp). After a first reading of each channel,
+// feeds given readings of channel 0 between markers. bench/growth.py compares how many rules fired.
 #include <array>
 #include <cstdint>
 
@@ -17,7 +16,7 @@ namespace {
 
 constexpr kernel::Duration kSettling = kernel::milliseconds(100);
 
-// What happened since begin(), while it listens.
+// Counts what happened since begin(), while it listens.
 class Counts final : public EventSink {
 public:
   Counts() : EventSink(false) {}
@@ -36,7 +35,7 @@ private:
 
 Counts counts;
 
-// Of a board with more memory than this one is said to have: programs of any size are measured.
+// Pretends to be a board with more memory, so that programs of any size can be measured.
 constexpr policy::BoardMemory kMemory = {
     .arena_begin = 0x2180'0000, .arena_bytes = 512 * 1024, .step_budget = 1'000'000};
 Runtime runtime(robosync_kernel, robosync_board, counts, arena_at(kMemory), kMemory);
@@ -67,7 +66,7 @@ void feed_first() {
   }
 }
 
-// First as on a board to which nobody listens: this is what is measured.
+// Without a listener: this is measured.
 void feed_given() {
   for (const vm::Value reading : given_readings()) {
     BENCH_MARK(step_begin);
@@ -77,7 +76,7 @@ void feed_given() {
   }
 }
 
-// Then the same again, to see that it does what it shall.
+// The same again with a listener, to check the results.
 void feed_again() {
   counts.listen(true);
   for (const vm::Value reading : given_readings()) {

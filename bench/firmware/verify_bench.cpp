@@ -1,5 +1,5 @@
-// Verifies one signature between markers: of a text as long as the order that an upload begins with. Key and signature are
-// libsodium's (the seed is 32 times 1); a signature with another bit must not be taken for one.
+// Verifies one signature between markers, of a text as long as the order that starts an upload. Key and signature are from
+// libsodium (the seed is 32 times 1). A signature with a flipped bit must be rejected.
 #include <array>
 #include <cstddef>
 #include <cstdint>

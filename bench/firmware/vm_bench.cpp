@@ -1,7 +1,6 @@
-// Runs each opcode of the shipped VM alone between markers, over operands from the edges of its
-// range.
+// Runs each opcode of the shipped VM alone between markers, with operands from the edges of their range.
 //
-// bench/bench.py reads the counts; the order of the markers is the order of opcodes.def.
+// bench/figures.py reads the counts; the markers are in the order of opcodes.def.
 #include <array>
 
 #include "bench/firmware/mark.hpp"
@@ -28,7 +27,7 @@ vm::Machine machine(const Value* constants) {
   m.timers = &timer;
   m.timer_memory = timer_memory.data();
   m.now = 1000;
-  m.wake = 5000;  // so that a sooner time must be compared with it
+  m.wake = 5000;  // so that an earlier time must be compared with it
   return m;
 }
 
@@ -50,8 +49,8 @@ void count_response(vm::Machine& m, const Word* code) {
   frame[3] = static_cast<Value>(progress.wake);
 }
 
-// What a time word may remember, in as many ways as there are edges: of each kind all that lead
-// another way through its code. The machine's time is 1000.
+// The memory of a time word, in as many ways as there are edges: for each kind, all that take another path through its code. The
+// machine's time is 1000.
 void fill_timer(vm::Opcode opcode, unsigned way) {
   timer = {vm::timer_kind_of(opcode), vm::kMaxEdges, 0, 100};
   constexpr std::uint32_t kOld = 800;
@@ -85,13 +84,13 @@ constexpr bool has_constant(const vm::OpcodeInfo& info) {
   return is_constant(info.operands[1]) || is_constant(info.operands[2]);
 }
 
-// Does the verifier allow this constant?
+// True if the verifier allows this constant.
 constexpr bool is_allowed(const vm::OpcodeInfo& info, Value constant) {
   const bool positive = vm::is_positive(info.operands[1]) || vm::is_positive(info.operands[2]);
   return positive ? constant > 0 : constant != vm::kUnknown;
 }
 
-// Operands are in cells 0 and 1 and constant 0, the result goes to cell 2. Jumps skip nothing.
+// Operands are in cells 0 and 1 and constant 0; the result goes to cell 2. Jumps skip nothing.
 constexpr Word word_of(vm::Opcode opcode) {
   const vm::OpcodeInfo& info = vm::info_of(opcode);
   const unsigned right = has_constant(info) || info.operands[2] == vm::Operand::timer ? 0 : 1;
@@ -101,8 +100,7 @@ constexpr Word word_of(vm::Opcode opcode) {
                                        : vm::encode(opcode, a, 0, right);
 }
 
-// The opcode before a terminator, or as the terminator. Truth operands only have their three
-// values; more do not hurt.
+// Runs the opcode before a terminator, or as the terminator. Truth operands have only three values; the others do no harm.
 void measure_opcode(vm::Opcode opcode) {
   const vm::OpcodeInfo& info = vm::info_of(opcode);
   const bool in_conditions = (static_cast<unsigned>(info.contexts) & 1) != 0;

@@ -1,8 +1,8 @@
-// Runs the first rule of a given image between markers, once for each reading: the workloads W1 to
-// W3 (bench/programs), as the behaviour's thread runs them. After each run it says what the inputs
-// are now and how many words were put out, for bench/workloads.py to compare.
+// Runs the first rule of a given image between markers, once for each reading: the workloads W1 to W3 (bench/programs), as the
+// behaviour's thread runs them. After each run, prints the inputs and the number of output words, which bench/workloads.py
+// checks.
 //
-// The image is verified before; a response that pauses is not a workload.
+// The image is verified first; a response that pauses is not a workload.
 #include <array>
 #include <span>
 
@@ -38,8 +38,8 @@ bool verified(vm::Image& image) {
   return verdict.ok();
 }
 
-// Variables begin as the program says; channels are unknown until they are read. Gives the cell of
-// the only channel that the rule reads; a cell that nobody reads where there is none.
+// Variables start as the program says; channels are unknown until they are read. Returns the cell of the only channel that the
+// rule reads; if there is none, a cell that is never read.
 unsigned latch(const vm::Image& image, const vm::Behavior& behavior) {
   frame.fill(vm::kUnknown);
   unsigned reading = kUnused;
@@ -66,14 +66,14 @@ vm::Machine machine(const vm::Image& image, std::uint32_t now) {
   return m;
 }
 
-// Of a rule: the code that runs in a step.
+// The code of a rule that runs in a step.
 struct Code {
   const Word* condition;
   const Word* then_side;
   const Word* else_side;
 };
 
-// A rule of another kind than WHEN responds whatever its condition gives; AT START has none.
+// Rules of other kinds than WHEN respond whatever their condition gives; AT START has none.
 Code code_of(const vm::Image& image, const vm::Rule& rule) {
   static constexpr std::array kNone = {vm::encode(vm::Opcode::ret, kUnused)};
   const bool chooses = rule.kind == vm::RuleKind::when && rule.else_response != vm::kNoIndex;
@@ -84,7 +84,7 @@ Code code_of(const vm::Image& image, const vm::Rule& rule) {
           &image.code[image.responses[otherwise].start]};
 }
 
-// From setting the reading to the last thing that the response does.
+// Counts from setting the reading to the end of the response.
 void run(vm::Machine& m, const Code& code, unsigned cell, Value reading) {
   BENCH_MARK(rule_begin);
   frame[cell] = reading;

@@ -28,7 +28,7 @@ void CodeDraft::land(std::size_t from) {
   instructions_[from].operands[1] = distance(from + 1, size());
 }
 
-// A jump that compares leaves the first register free for the truth.
+// ExpressionEmitter::jump_unless() reserves register 0 for the truth value.
 void CodeDraft::split(std::size_t from) {
   const Cell truth{Zone::temporary, 0};
   Instruction& compare = instructions_[from];

@@ -1,5 +1,5 @@
-// Code under construction: the instructions of one condition or response, the frame of their
-// behaviour, the code section of the image.
+// Code under construction: the instructions of one condition or response, the frame of their behaviour, and the code section of
+// the image.
 #pragma once
 
 #include <array>
@@ -17,14 +17,13 @@ namespace robosync::compiler {
 
 // ---- instructions
 //
-// Instructions before the frame of their behaviour is laid out: an operand may be a cell that is
-// known only by what it is for. Frame::resolve() turns them into words.
+// Instructions before the frame of their behaviour is laid out: an operand may be a cell that only has a purpose, not a place.
+// Frame::resolve() turns them into words.
 
-// The parts of a frame, in their order.
+// The zones of a frame, in order.
 enum class Zone : std::uint8_t { input, local, watch, temporary };
 
-// A cell of the frame. `number`: of an input, the input's number in the image; else the place in
-// its zone.
+// A cell of the frame. `number`: for an input, the input's number in the image; otherwise its index in the zone.
 struct Cell {
   Zone zone = Zone::temporary;
   std::uint32_t number = 0;
@@ -35,7 +34,7 @@ struct Operand {
   Operand(std::uint32_t a_value) : value(a_value) {}
   Operand(Cell cell) : zone(cell.zone), value(cell.number) {}
 
-  std::optional<Zone> zone;  // nothing: `value` as it stands
+  std::optional<Zone> zone;  // nullopt: `value` is literal
   std::uint32_t value = 0;
 };
 
@@ -44,38 +43,37 @@ struct Instruction {
   std::array<Operand, 3> operands;  // of a wide kind in B, C is empty
 };
 
-// Where code comes from: a statement, or the rule of a condition.
+// The origin of code: a statement, or the rule of a condition.
 struct Source {
   std::uint16_t line = 0;
   Span span;
 };
 
-// The first instruction that comes from a line.
+// The first instruction from a source line.
 struct Mark {
-  std::size_t at = 0;  // counts from the object's start
+  std::size_t at = 0;  // counts from the start of the object
   Source source;
 };
 
 // A condition or a response.
 class CodeDraft {
 public:
-  // Gives the place of the instruction.
+  // Returns the index of the instruction.
   std::size_t emit(vm::Opcode opcode, Operand a = {}, Operand b = {}, Operand c = {}) {
     instructions_.push_back({opcode, {a, b, c}});
     return instructions_.size() - 1;
   }
-  // What is emitted from now on comes from `source`.
+  // Instructions emitted from now on come from `source`.
   void mark(const Source& source);
   [[nodiscard]] Source source() const { return marks_.empty() ? Source{} : marks_.back().source; }
-  // Makes the jump at `from`, whose target lies ahead, go to what is emitted next. All jumps
-  // behind it that stay behind it must have landed. Where one that compares does not reach that
-  // far, it becomes two instructions.
+  // Makes the forward jump at `from` go to the next instruction that is emitted. Jumps in the code that it skips must have
+  // landed, unless they go further. A jump that compares becomes two instructions if its target is out of reach.
   void land(std::size_t from);
   // Makes the last instruction put its result into `cell`.
   void retarget(Cell cell) { instructions_.back().operands[0] = cell; }
-  // Makes the last instruction, a command, the end of the response.
+  // Turns the last instruction, a command, into the end of the response.
   void end_with_command() { instructions_.back().opcode = vm::Opcode::cmd_end; }
-  // The operand of an instruction emitted next that goes back to `target`.
+  // The operand of a jump back to `target`, in the instruction that is emitted next.
   [[nodiscard]] Operand back_to(std::size_t target) const { return distance(target, size() + 1); }
 
   [[nodiscard]] std::size_t size() const { return instructions_.size(); }
@@ -95,11 +93,11 @@ private:
 
 // ---- frames
 //
-// The frame of one behaviour: which cells its code uses, and where each of them stands.
+// The frame of one behaviour: the cells that its code uses, and their places.
 //
 // inputs that it sets | its other inputs | locals | truths of its watch rules | registers
 
-// A condition or response: its words, and which of them begins a source line.
+// A condition or response: its words, and the words where source lines begin.
 struct CodeObject {
   std::vector<vm::Word> words;
   std::vector<Mark> marks;
@@ -107,20 +105,20 @@ struct CodeObject {
 
 class Frame {
 public:
-  // While code is made: each notes that there must be such a cell.
+  // While code is emitted: each call requests such a cell.
   Cell read(std::uint32_t input);
   Cell write(std::uint32_t input);
-  Cell add_local();  // one more; locals are never shared between responses
+  Cell add_local();  // a new one; locals are never shared between responses
   Cell add_watch();
   Cell temporary(std::uint32_t depth);
 
-  // When all code is made.
+  // After all code has been emitted.
   [[nodiscard]] std::vector<std::uint32_t> inputs() const;  // in the order of their cells
   [[nodiscard]] std::size_t writable() const { return written_.size(); }
   [[nodiscard]] std::uint32_t locals() const { return locals_; }
-  // Of the whole frame. More than vm::kMaxCells: it does not fit.
+  // The size of the whole frame. It does not fit if it is larger than vm::kMaxCells.
   [[nodiscard]] std::size_t cells() const;
-  // `code` with every cell at its place. Only for a frame that fits.
+  // Replaces every cell in `code` by its place. Only for a frame that fits.
   [[nodiscard]] CodeObject resolve(const CodeDraft& code) const;
 
 private:
@@ -130,23 +128,23 @@ private:
 
 // ---- the code section
 //
-// The code and constant sections under construction. Equal constants and equal code objects are
-// kept once; objects that use timers never are equal, for a timer is used once.
+// The code and constant sections under construction. Equal constants and equal code objects are stored once. Objects with timers
+// are never equal, because each use needs its own timer.
 
-inline constexpr std::size_t kMaxConst8 = 256;  // constants that an operand of one byte reaches
+inline constexpr std::size_t kMaxConst8 = 256;  // constants that a one-byte operand reaches
 
 class CodePool {
 public:
   [[nodiscard]] std::size_t constant(vm::Value value);
-  // The same for an operand of one byte; nothing when it stands too far behind.
+  // The same for a one-byte operand; nullopt if the constant is out of its reach.
   [[nodiscard]] std::optional<std::uint32_t> near_constant(vm::Value value);
-  // Where the object stands in the code section.
+  // Returns the object's offset in the code section.
   [[nodiscard]] std::size_t add(const CodeObject& object);
 
   [[nodiscard]] const std::vector<vm::Value>& constants() const { return constants_; }
   [[nodiscard]] const std::vector<vm::Word>& code() const { return code_; }
   [[nodiscard]] std::vector<vm::SourceLine> lines() const;
-  // What the word of the code section comes from; empty when it is not known.
+  // The source of a word of the code section; empty if it is not known.
   [[nodiscard]] Span span_of(std::size_t word) const;
 
 private:

@@ -1,4 +1,4 @@
-// Which rules make a step cost much, for whoever has to say that it costs too much.
+// Finds the rules that make a step expensive, for messages about steps that cost too much.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct CostlyRule {
   vm::RuleCost cost;
 };
 
-// The three that cost most in a step, in that order. None when the verifier would refuse the
-// code for anything but its cost. `image` must be a view that vm::view_image() accepted.
+// The three rules that cost most in a step, most expensive first. Empty if the verifier would refuse the code for any reason but
+// its cost. `image` must be a view that vm::view_image() accepted.
 [[nodiscard]] std::vector<CostlyRule> costly_rules(const vm::Image& image);
 
 inline constexpr std::string_view kHelpForCostlyStep =

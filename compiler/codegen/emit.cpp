@@ -1,4 +1,4 @@
-// Lays out records and code, fills in the header, and has the verifier check the result.
+// Lays out records and code and fills in the header.
 #include "compiler/codegen/emit.hpp"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ private:
   std::vector<std::byte> bytes_;
 };
 
-// Their parameters stand behind the numbers of the code.
+// The parameters of the algorithms follow the constants of the code.
 void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
   constants_ = rules_.pool.constants();
   for (vm::Sensor& record : records_.sensors) {

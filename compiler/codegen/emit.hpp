@@ -14,20 +14,20 @@ namespace robosync::compiler {
 
 struct EmitOptions {
   bool source_lines = true;  // keep the debug section
-  std::uint32_t seed = 0;    // in the place of the robot's; 0: none
+  std::uint32_t seed = 0;    // replaces the robot's; 0: the robot's is used
 };
 
 struct Emitted {
-  std::vector<std::byte> image;  // empty when the program is too large for the format
-  CodePool code;                 // knows what each word of the image's code comes from
-  std::vector<Span> rules;       // where each rule of the image is written
+  std::vector<std::byte> image;  // empty if the program is too large for the format
+  CodePool code;                 // maps each word of the image's code to its source
+  std::vector<Span> rules;       // the source position of each rule of the image
 };
 
-// Same input, same bytes. What does not fit is reported (E0407); whether a board would take the image, verify_image() says.
+// The same input gives the same bytes. Reports what does not fit the format (E0407); verify_image() tells whether a board would
+// accept the image.
 //
-// `written`: the program as sema made it, which may be `program` itself. What it uses and reads
-// stays in the image, whatever the optimiser has left out: devices keep their numbers, and a
-// behaviour is evaluated in the same steps.
+// `written`: the program as sema made it, which may be `program` itself. What it uses and reads stays in the image even if the
+// optimiser removed it: devices keep their numbers, and a behaviour is evaluated in the same steps.
 [[nodiscard]] Emitted emit(const ir::Program& program, const ir::Program& written,
                            const Robot& robot, EmitOptions options, Diagnostics& diagnostics);
 

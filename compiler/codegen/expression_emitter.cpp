@@ -13,7 +13,7 @@ bool reads_local(const Expression& expression) {
          std::any_of(expression.operands.begin(), expression.operands.end(), reads_local);
 }
 
-// x * 2 saturates where x + x does. Known products have an instruction of their own.
+// x * 2 saturates where x + x does. A product whose operand is known has its own instruction.
 bool is_double(const Expression& expression) {
   constexpr vm::Value kTwo = 2 * vm::kScale;
   return expression.operation == Operation::multiply && !expression.operands[0].fact.known &&
@@ -21,15 +21,15 @@ bool is_double(const Expression& expression) {
          expression.operands[1].constant == kTwo;
 }
 
-// May it be worked out once instead of twice? Of two equal time words, both always are the same;
-// but those with two operands keep something in the register of the first.
+// True if two equal expressions may be evaluated once. Equal time words always have the same value, but those with two operands
+// use the register of the first one for themselves.
 bool can_be_shared(const Expression& expression) {
   const bool two = is_time_word(expression.operation) && expression.operands.size() > 1;
   return expression.operation != Operation::random && !two &&
          std::all_of(expression.operands.begin(), expression.operands.end(), can_be_shared);
 }
 
-constexpr std::size_t kMaxLookedAt = 64;  // parts of a condition
+constexpr std::size_t kMaxLookedAt = 64;  // parts of a condition that are compared
 
 std::uint32_t after(Cell cell, std::uint32_t depth) {
   return cell.zone == Zone::temporary ? depth + 1 : depth;
@@ -43,7 +43,7 @@ Cell ExpressionEmitter::condition(const Expression& expression) {
   return value(expression, static_cast<std::uint32_t>(shared_.size()));
 }
 
-// Outer parts first: what is inside of an equal part is not looked at again.
+// Outer parts first: the inside of a part that is shared is not searched.
 void ExpressionEmitter::share(const Expression& expression, std::vector<const Expression*>& seen) {
   if (expression.operands.empty() || seen.size() == kMaxLookedAt) return;
   const auto same = [&](const Expression* other) { return *other == expression; };
@@ -106,7 +106,7 @@ Cell ExpressionEmitter::worked_out(const Expression& expression, std::uint32_t d
 
 void ExpressionEmitter::put_into(Cell target, Cell cell) {
   if (cell.zone == Zone::temporary)
-    code_.retarget(target);  // the last instruction is the one that gives the value
+    code_.retarget(target);  // the last instruction computes the value
   else
     code_.emit(vm::Opcode::move, target, cell);
 }
@@ -140,7 +140,7 @@ Cell ExpressionEmitter::binary(vm::Opcode opcode, const Expression& left, const 
   return cell;
 }
 
-// With a constant in the instruction, or without checks that were proved to be needless.
+// An instruction with a constant operand, or one without checks that were proved unnecessary.
 std::optional<Cell> ExpressionEmitter::cheaper(const Expression& expression, std::uint32_t depth) {
   if (is_double(expression)) {
     const Cell once = value(expression.operands[0], depth);
@@ -171,7 +171,7 @@ std::optional<std::size_t> ExpressionEmitter::jump_unless(const Expression& comp
     if (!parts_.pool.near_constant(right.constant)) return std::nullopt;
     return jump_unless(operation, value(left), right.constant);
   }
-  // In the same order as comparison(): it may draw random numbers.
+  // Evaluates in the same order as comparison(), because the operands may draw random numbers.
   const bool turned = operation == Operation::greater || operation == Operation::greater_equal;
   const Cell first = value(turned ? right : left);
   const Cell second = value(turned ? left : right, after(first, 0));
@@ -219,7 +219,7 @@ Cell ExpressionEmitter::time_word(const Expression& expression, std::uint32_t de
   const vm::Opcode opcode = vm::time_word_of(timer_kind(expression.operation));
   const Cell cell = parts_.frame.temporary(depth);
   Cell source = value(operands[0], depth);
-  // The opcodes of two operands have the first one where they put the result.
+  // The opcodes with two operands expect the first one in their result register.
   const bool there = source.zone == cell.zone && source.number == cell.number;
   if (operands.size() > 1 && !there) code_.emit(vm::Opcode::move, cell, source);
   if (operands.size() > 1) source = value(operands[1], depth + 1);
@@ -231,7 +231,7 @@ Cell ExpressionEmitter::watched(const Expression& expression) {
   std::vector<Watch>& watches = parts_.watches;
   const auto same = std::find_if(watches.begin(), watches.end(),
                                  [&](const Watch& watch) { return watch.time_word == expression; });
-  // Locals of the same number are others in another response.
+  // In another response, a local with the same number is a different local.
   if (same != watches.end() && !reads_local(expression)) return same->truth;
   watches.push_back({expression, locals_, parts_.frame.add_watch(), code_.source()});
   return watches.back().truth;

@@ -1,8 +1,7 @@
-// Numbers and truth values to instructions.
+// Turns expressions into instructions.
 //
-// Registers are a stack: a part of an expression writes the register of its depth, and the
-// operation above reads it. So every register is written before it is read, and nothing stays in
-// one.
+// Registers form a stack: each part of an expression writes the register of its depth, and the operation above reads it. So every
+// register is written before it is read, and none holds a value after the expression.
 #pragma once
 
 #include <cstdint>
@@ -24,29 +23,29 @@ public:
   ExpressionEmitter(Parts& parts, CodeDraft& code, TimeWords time_words)
       : parts_(parts), code_(code), time_words_(time_words) {}
 
-  // The whole of a condition, ready for `ret`. When the program shares, parts of it that are equal
-  // are worked out once: every part is evaluated whatever the others are.
+  // The whole of a condition, ready for `ret`. If the program shares, equal parts are evaluated once: every part is evaluated,
+  // whatever the values of the others.
   Cell condition(const Expression& expression);
-  // Gives the cell where the value is; `depth` registers are in use.
+  // Returns the cell with the value; `depth` registers are in use.
   Cell value(const Expression& expression, std::uint32_t depth = 0);
   // `target`: a local, or a variable that is written in place.
   void value_into(Cell target, const Expression& expression) {
     put_into(target, value(expression));
   }
-  // `cell` is what was worked out last.
+  // `cell` holds the result of the last instruction.
   void put_into(Cell target, Cell cell);
   Cell constant(vm::Value value, std::uint32_t depth = 0);
   // The truth of "left <operation> right".
   Cell compare(Operation operation, Cell left, vm::Value right, std::uint32_t depth);
-  // Jumps unless the comparison is true; gives the place of the jump. Nothing: it is no comparison,
-  // or its constant stands too far behind.
+  // Jumps unless the comparison is true; returns the index of the jump. nullopt: it is not a comparison, or its constant is out
+  // of reach.
   std::optional<std::size_t> jump_unless(const Expression& comparison);
   std::optional<std::size_t> jump_unless(Operation comparison, Cell left, vm::Value right);
-  // `source`, but not outside min … max of the variable, as far as that has to be looked after.
+  // `source`, clamped to the variable's min and max where it may be outside.
   Cell clamped(Cell source, const ir::Variable& variable, const ir::Set& set);
 
-  // From now on a read of the variable gives what is inside its range: its cell holds the sum of what
-  // was raised and lowered, which the next step bounds once.
+  // From now on, reads of the variable are clamped to its range: its cell holds the unbounded sum of RAISE and LOWER, which the
+  // next step clamps once.
   void bound_reads(std::size_t variable) { bounded_.insert(variable); }
 
   [[nodiscard]] LocalCells& locals() { return locals_; }

@@ -8,7 +8,7 @@
 namespace robosync::compiler {
 namespace {
 
-// A comparison, and the jump that does it.
+// A comparison, and the jump that includes it.
 struct Jump {
   vm::Opcode comparison, unless;
 };

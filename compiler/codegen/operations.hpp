@@ -1,4 +1,4 @@
-// Which opcode an operation of the program becomes.
+// Maps operations of the program to opcodes.
 #pragma once
 
 #include <optional>
@@ -8,27 +8,26 @@
 
 namespace robosync::compiler {
 
-// A comparison with a constant on its right side.
+// A comparison whose right operand is a constant.
 [[nodiscard]] vm::Opcode with_constant(Operation comparison);
-// An operation with two cells. Not greater and greater_equal: they are less and less_equal
-// mirrored.
+// An operation on two cells. For greater and greater_equal use less and less_equal, mirrored.
 [[nodiscard]] vm::Opcode with_cells(Operation operation);
-// A jump unless the comparison with a constant, or with a cell, is true. Of cells as with_cells().
+// A jump unless the comparison with a constant, or with a cell, is true. For cells, see with_cells().
 [[nodiscard]] vm::Opcode unless_with_constant(Operation comparison);
 [[nodiscard]] vm::Opcode unless_with_cells(Operation comparison);
-// The comparison that such a jump does.
+// The comparison that the jump includes.
 [[nodiscard]] std::optional<vm::Opcode> compared_by(vm::Opcode jump);
 
-// ---- cheaper instructions, where facts allow them
+// ---- cheaper instructions, if facts allow them
 
-// An operation with a constant as its second operand.
+// An operation whose second operand is a constant.
 struct WithConstant {
   vm::Opcode opcode{};
   vm::Value constant = 0;
 };
 [[nodiscard]] std::optional<WithConstant> constant_form(const Expression& expression);
 
-// An operation that checks nothing. `exchanged`: its operands stand the other way round.
+// An operation without checks. `exchanged`: its operands are swapped.
 struct Unchecked {
   vm::Opcode opcode{};
   bool exchanged = false;

@@ -1,4 +1,4 @@
-// What the code of one behaviour is made with, and what making it leaves to be done.
+// The inputs for the code of one behaviour, and the work that emitting it leaves to be done.
 #pragma once
 
 #include <map>
@@ -13,12 +13,12 @@ namespace robosync::compiler {
 
 using LocalCells = std::map<std::size_t, Cell>;  // by ir::Local::number
 
-// A time word inside a response: a watch rule has to evaluate it in every step.
+// A time word in a response: a watch rule must evaluate it in every step.
 struct Watch {
   Expression time_word;
-  LocalCells locals;  // that it may read
+  LocalCells locals;  // that the time word may read
   Cell truth;
-  Source source;  // the statement
+  Source source;  // the statement with the time word
 };
 
 struct Parts {

@@ -63,9 +63,9 @@ private:
   const Tables& tables_;
   Strings& strings_;
   Records records_;
-  std::vector<std::size_t> sensor_places_;                 // in Robot::sensors, of records_.sensors
-  std::vector<std::pair<ServoChip, std::uint8_t>> chips_;  // behind these, and where
-  std::map<std::size_t, std::uint8_t> displays_;           // by actuator, the same
+  std::vector<std::size_t> sensor_places_;                 // by record: the index in Robot::sensors
+  std::vector<std::pair<ServoChip, std::uint8_t>> chips_;  // and the index of the record
+  std::map<std::size_t, std::uint8_t> displays_;           // by actuator: the index of the record
 };
 
 void RecordMaker::sensors() {
@@ -80,7 +80,7 @@ void RecordMaker::sensors() {
   }
 }
 
-// What an actuator is on, where that is a device on a bus.
+// Adds the record of the bus device that drives an actuator: a servo chip or a display.
 void RecordMaker::served(std::size_t place) {
   const ActuatorConfig& config = robot_.actuators[place];
   if (config.chip) servo_chip(*config.chip);
@@ -121,7 +121,7 @@ void RecordMaker::channel(ChannelRef ref) {
   records_.channels.push_back(record);
 }
 
-// AT is the speed of the way that TO says.
+// True if AT is the speed of the movement that TO specifies.
 bool moves(const ActuatorConfig& config) {
   if (config.to_unit == nullptr || config.at_unit == nullptr) return false;
   using vm::Dimension;
@@ -138,12 +138,12 @@ bool moves(const ActuatorConfig& config) {
   }
 }
 
-// Where it is matters to one that goes at a speed, or that no command may take there faster.
+// The position must be kept if the actuator moves at a set speed, or if its speed is limited.
 bool keeps_its_place(const ActuatorConfig& config, vm::Value speed_limit) {
   return moves(config) && (config.usual_speed > 0 || speed_limit < vm::kValueMax);
 }
 
-// TO says power as AT does, so the limit bounds its range: the trace then shows what is given.
+// TO sets the power, like AT, so the limit applies to its range. The trace then shows the power that is output.
 void keep_power(vm::Actuator& record) {
   record.min = std::clamp(record.min, -record.speed_limit, record.speed_limit);
   record.max = std::clamp(record.max, -record.speed_limit, record.speed_limit);

@@ -1,4 +1,4 @@
-// The records of devices and of what is remembered: all that the image has beside rules and code.
+// The records of devices and variables: everything in the image apart from rules and code.
 #pragma once
 
 #include <vector>
@@ -23,7 +23,7 @@ struct Records {
   std::vector<vm::Key> keys;
 };
 
-// Names and labels go into `strings`.
+// Adds names and labels to `strings`.
 [[nodiscard]] Records make_records(const ir::Program& program, const Robot& robot,
                                    const Tables& tables, Strings& strings);
 

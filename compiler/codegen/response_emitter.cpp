@@ -1,4 +1,4 @@
-// Shapes of blocks are those of opcodes.def and docs/bytecode.md; the verifier accepts no others.
+// Blocks have the shapes that opcodes.def and docs/bytecode.md define; the verifier accepts no others.
 #include "compiler/codegen/response_emitter.hpp"
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 namespace robosync::compiler {
 namespace {
 
-// An AND becomes blocks in blocks as long as so many places for blocks are left.
+// An AND becomes nested blocks while fewer than this many blocks are open.
 constexpr unsigned kSpareBlocks = vm::kMaxBlocks / 2;
 
-// The number of a local that stands for the cell of a variable, as it is: no response has so many.
+// The number of a local that stands for a variable's cell, unclamped. No response has that many locals.
 constexpr std::size_t kItsCell = SIZE_MAX;
 
-// What RAISE and LOWER set: the sum of all of them, which the next step bounds.
+// The sum that RAISE and LOWER build up, which the next step clamps.
 Expression sum_of(const ir::Set& set) {
   Expression before;
   before.operation = Operation::local;
@@ -28,17 +28,17 @@ Expression sum_of(const ir::Set& set) {
   return sum;
 }
 
-// To `load`, these are truth values, which a variable must not hold.
+// To `load`, these constants are truth values, which a variable must not hold.
 bool looks_like_truth(vm::Value constant) {
   return constant == vm::kTrue || constant == vm::kFalse;
 }
 
-// ---- how deeply blocks are nested
+// ---- nesting of blocks
 
 unsigned blocks_in(const ir::Block& block);
 
-// Blocks of the code that a statement opens inside of each other, those of its own blocks included.
-// What holds no blocks opens none, unless it stands below.
+// The nesting depth of blocks in the code of a statement, including the blocks inside it. A statement without blocks has depth 0,
+// unless an overload below says otherwise.
 template <typename Node>
 unsigned blocks_of(const Node& node) {
   for_each_block(node, [](auto& block) {
@@ -68,7 +68,7 @@ unsigned blocks_of(const ir::Repeat& repeat) {
   return blocks_in(repeat.body) + (once ? 1 : 2);
 }
 
-// The options but the first and the last stand in the ELSE of the one before.
+// Every option except the first and the last is in the ELSE of the one before.
 unsigned blocks_of(const ir::Pick& pick) {
   if (pick.options.size() == 1) return blocks_in(pick.options.front().body);
   unsigned most = 0;
@@ -89,7 +89,7 @@ unsigned blocks_in(const ir::Block& block) {
 
 // ---- the emitter
 
-class ResponseEmitter {  // of one response
+class ResponseEmitter {  // for one response
 public:
   explicit ResponseEmitter(Parts& parts)
       : parts_(parts), expressions_(parts, response_.code, TimeWords::watched) {}
@@ -122,26 +122,26 @@ private:
   void repeat_forever(const ir::Repeat& repeat);
   void repeat_while(const ir::Repeat& repeat);
   void options(const ir::Pick& pick, Cell drawn);
-  // Emits what begins a block; gives its place, for the jump that ends there.
+  // Emits the start of a block; returns its index, for the jump to the block's end.
   std::size_t open(Opcode opcode, Operand a = {}, Operand b = {});
   // Opens a block that runs if the condition is true.
   std::size_t open_unless(const Expression& condition);
   std::size_t open_unless(Operation comparison, Cell left, vm::Value right);
-  // The same, as one block in the other for each part of an AND, as far as there is room for them
-  // around `inside` other blocks; the outermost comes first.
+  // The same, but with nested blocks for the parts of an AND, as far as the nesting limit allows with `inside` more blocks in
+  // them. The outermost comes first.
   std::vector<std::size_t> open_unless_all(const Expression& condition, unsigned inside);
-  // One more block is open.
+  // Counts one more open block.
   void count_block();
-  // Ends the block that began at `begin`, and begins its ELSE; gives the place of that.
+  // Ends the block that began at `begin`, and begins its ELSE; returns the index of the ELSE.
   std::size_t otherwise(std::size_t begin);
-  // The same where the block around both ends in the same place: it takes the ELSE in.
+  // The same if the enclosing block ends at the same place; the ELSE becomes part of it.
   std::size_t otherwise_to_same_end(std::size_t begin);
-  void close(std::size_t begin);  // of a block that ends here
-  // Ends a loop or the evaluation of a wait by `opcode`, which may go back to its start.
+  void close(std::size_t begin);  // ends the block here
+  // Ends a loop or the evaluation of a wait with `opcode`, which may jump back to its start.
   void close_around(Opcode opcode, Operand a, std::size_t begin);
 
   CodeDraft& code() { return response_.code; }
-  // What is emitted from now on comes from the current statement.
+  // Instructions emitted from now on come from the current statement.
   void mark() { code().mark({current_->line, current_->span}); }
 
   Parts& parts_;
@@ -201,8 +201,7 @@ void ResponseEmitter::emit(const ir::Local& local) {
   expressions_.locals()[local.number] = cell;
 }
 
-// What is SET is clamped here. What is RAISEd and LOWERed is added up, and bounded where it is read and in
-// the next step.
+// SET is clamped here. RAISE and LOWER are added up; the sum is clamped when it is read, and in the next step.
 void ResponseEmitter::emit(const ir::Set& set) {
   const ir::Variable& variable = parts_.program.variables[set.variable];
   const Cell target = parts_.frame.write(parts_.tables.variable(set.variable));
@@ -276,7 +275,7 @@ std::size_t ResponseEmitter::open_unless(Operation comparison, Cell left, vm::Va
   return open(Opcode::unless, expressions_.compare(comparison, left, right, 0));
 }
 
-// The right side is left out when the left one is not true, so nobody may notice that.
+// The right side is skipped if the left one is not true, so it must have no side effects.
 std::vector<std::size_t> ResponseEmitter::open_unless_all(const Expression& condition,
                                                           unsigned inside) {
   const bool has_room = open_blocks_ < kSpareBlocks && open_blocks_ + inside + 2 <= vm::kMaxBlocks;
@@ -311,7 +310,7 @@ void ResponseEmitter::close_around(Opcode opcode, Operand a, std::size_t begin) 
   --open_blocks_;
 }
 
-// With the condition unknown neither side runs; without ELSE that comes by itself.
+// If the condition is unknown, neither side runs. Without ELSE, that needs no extra test.
 void ResponseEmitter::emit(const ir::If& choice) {
   if (choice.else_block.empty()) {
     const std::vector<std::size_t> begins =
@@ -363,7 +362,7 @@ void ResponseEmitter::repeat_constant_times(const ir::Repeat& repeat) {
   close_around(Opcode::again, counter, begin);
 }
 
-// To what they are: the loop certainly writes them, and then need not say so in each round.
+// Writes the variables' own values: the loop is certain to write them, and can then do so in place in every round.
 void ResponseEmitter::write_ahead(const ir::Repeat& repeat) {
   const auto write = [this](Opcode opcode, std::size_t variable) {
     const Cell target = parts_.frame.write(parts_.tables.variable(variable));
@@ -420,10 +419,10 @@ void ResponseEmitter::emit(const ir::Pick& pick) {
   options(pick, drawn);
 }
 
-// Each option but the last is an IF whose ELSE holds those that follow; all end in the same place.
+// Each option except the last is an IF whose ELSE holds the following ones; all end at the same place.
 void ResponseEmitter::options(const ir::Pick& pick, Cell drawn) {
   std::vector<std::size_t> jumps;
-  vm::Value share = 0;  // of the options so far
+  vm::Value share = 0;  // the sum of the weights so far
   for (const ir::Option& option : pick.options) {
     share += option.weight;
     if (&option == &pick.options.back()) {
@@ -459,7 +458,7 @@ void ResponseEmitter::emit(const ir::WaitUntil& wait) {
   close_around(Opcode::until, truth, poll);
 }
 
-// A poll that commands: what is looked at in every step is the body, and it ends with its time only.
+// A poll that runs its body in every step, and ends only when its time is over.
 void ResponseEmitter::emit(const ir::Follow& follow) {
   std::optional<Cell> deadline;
   if (follow.lasts) {

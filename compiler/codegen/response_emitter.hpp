@@ -1,5 +1,5 @@
-// A response to instructions. Each statement leaves the registers free; what has to last (counters
-// of loops, what DEFINEs are given) is in locals of its own.
+// Turns a response into instructions. Each statement leaves the registers free. Values that must last (loop counters, arguments
+// of DEFINEs) have their own locals.
 #pragma once
 
 #include "compiler/codegen/parts.hpp"
@@ -11,10 +11,10 @@ struct ResponseCode {
   std::uint32_t actuators = 0;  // every actuator that it can command
 };
 
-// What does not fit is reported.
+// Reports what does not fit.
 [[nodiscard]] ResponseCode emit_response(Parts& parts, const ir::Block& response);
 
-// Is it known only on the robot what the variable will be?
+// True if the new value of the variable is not known before the program runs.
 [[nodiscard]] bool needs_clamping(const ir::Set& set);
 
 }  // namespace robosync::compiler

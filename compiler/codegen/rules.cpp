@@ -1,5 +1,4 @@
-// One behaviour after the other: the code of its rules, then the frame that this code needs, then
-// the records.
+// For each behaviour: emits the code of its rules, then lays out the frame that the code needs, then writes the records.
 #include "compiler/codegen/rules.hpp"
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 namespace robosync::compiler {
 namespace {
 
-// A rule whose code has been made; the record is complete but for where the code stands.
+// A rule whose code has been emitted; the record lacks only the place of the code.
 struct RuleDraft {
   vm::Rule record{};
   Span span;
@@ -20,7 +19,7 @@ struct RuleDraft {
   std::optional<ResponseCode> then_response, else_response;
 };
 
-// The variables whose new value has to be clamped on the robot.
+// The variables whose new value must be clamped on the robot.
 void find_clamped(const ir::Block& block, std::set<std::size_t>& clamped) {
   for_each_of<ir::Set>(block, [&](const ir::Set& set) {
     if (needs_clamping(set)) clamped.insert(set.variable);
@@ -111,7 +110,7 @@ private:
   std::vector<RuleDraft> make_drafts(Parts& parts, const ir::Behavior& behavior);
   RuleDraft draft(Parts& parts, const ir::Rule& rule);
   std::uint8_t modifiers(const ir::Rule& rule);
-  static std::string title(const ir::Behavior& behavior);  // of one that has rules
+  static std::string title(const ir::Behavior& behavior);  // for a behaviour with rules
   bool fits(const Parts& parts, const ir::Behavior& behavior, std::size_t rules);
   void add(RuleDraft& draft, const Frame& frame, std::uint32_t& actuators);
   std::uint16_t add(const ResponseCode& response, const Frame& frame);
@@ -124,7 +123,7 @@ private:
   RuleSections sections_;
 };
 
-// min_k and max_k reach the first constants only: the limits that they need come first.
+// min_k and max_k reach only the first constants, so the limits that they need are added first.
 void RuleWriter::reserve_limits() {
   std::set<std::size_t> clamped;
   for_each_rule(program_, [&](const ir::Rule& rule) {
@@ -165,7 +164,7 @@ void RuleWriter::add(const ir::Behavior& behavior, const std::vector<ir::Rule>& 
   sections_.behaviors.push_back(record);
 }
 
-// The watch rules stand behind the others.
+// The watch rules follow the others.
 std::vector<RuleDraft> RuleWriter::make_drafts(Parts& parts, const ir::Behavior& behavior) {
   std::vector<RuleDraft> drafts;
   for (const ir::Rule& rule : behavior.rules) {

@@ -43,7 +43,7 @@ Tables::Tables(const ir::Program& program, const Robot& robot, Diagnostics& diag
   number(motion_groups_);
 }
 
-// What the algorithms read whose outputs are used.
+// Adds the inputs of the algorithms whose outputs are used.
 void Tables::use_inputs(const Robot& robot) {
   std::set<std::size_t> used;
   for (const auto& [ref, number] : channels_)
@@ -103,7 +103,7 @@ void Tables::check_counts(const ir::Program& program, Diagnostics& diagnostics) 
                                    std::to_string(limit))
           .label({});
   };
-  // The last group's number would be kAllActuators.
+  // One more group would get the number kAllActuators.
   constexpr std::size_t kMaxGroups = vm::kAllActuators - vm::kGroupBit;
   constexpr std::size_t kInputs = std::min<std::size_t>(vm::kMaxInputs, vm::Limits{}.inputs);
   check(channels_.size() + program.variables.size(), kInputs, "channels and variables");
@@ -171,7 +171,7 @@ std::uint32_t Tables::verbs_of(const ActuatorConfig& actuator, std::size_t place
 // ---- texts
 
 std::uint16_t Strings::offset(std::string_view text) {
-  // Of more than an image holds, nobody reads the places.
+  // If the strings are too long for an image, their offsets are never used.
   const bool full = text_.size() > UINT16_MAX;
   if (full) return 0;
   const std::size_t end = text_.size() + text.size();

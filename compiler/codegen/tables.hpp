@@ -1,5 +1,4 @@
-// Tables of the image under construction: the numbers of what the program uses, its texts, its
-// timers.
+// Tables of the image under construction: the numbers of the things that the program uses, its texts, its timers.
 #pragma once
 
 #include <algorithm>
@@ -18,17 +17,17 @@ namespace robosync::compiler {
 
 // ---- numbers
 //
-// Numbers for what the program uses: channels, actuators, groups, verbs, words. What it does not
-// use gets none, and does not travel in the image. Variables have the numbers that sema gave them.
+// Numbers of the channels, actuators, groups, verbs and words that the program uses. Unused ones get no number and are not in the
+// image. Variables keep the numbers from sema.
 
 class Tables {
 public:
-  // Reports E0407 when there is more than the image format can number.
+  // Reports E0407 for more than the image format can number.
   Tables(const ir::Program& program, const Robot& robot, Diagnostics& diagnostics);
 
-  // Valid when nothing was reported.
+  // Valid if nothing was reported.
   [[nodiscard]] std::uint8_t input(ChannelRef ref) const { return channels_.at(ref); }
-  // The sensor that a channel with this number is of: its place in the Robot's list.
+  // The index, in the Robot's list, of the sensor that has the channel with this number.
   [[nodiscard]] std::size_t sensor_of(std::uint8_t number) const {
     return std::ranges::find(channels_, number, [](const auto& entry) { return entry.second; })
         ->first.sensor;
@@ -47,17 +46,17 @@ public:
   [[nodiscard]] std::uint8_t verb(const ir::Command& command) const;
   [[nodiscard]] std::uint8_t word(const ir::Command& command) const;
 
-  // What has a number, in the order of the numbers: places in the Robot's lists.
+  // Everything that has a number, in the order of the numbers: indexes in the Robot's lists.
   [[nodiscard]] const std::map<ChannelRef, std::uint8_t>& channels() const { return channels_; }
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& actuators() const { return actuators_; }
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& groups() const { return groups_; }
-  // Those of several actuators are groups, behind the robot's: places in ir::Program::motions.
+  // MOTIONs of several actuators are groups, numbered after the robot's: indexes in ir::Program::motions.
   [[nodiscard]] const std::map<std::size_t, std::uint8_t>& motion_groups() const {
     return motion_groups_;
   }
   [[nodiscard]] const std::vector<ir::Verb>& verbs() const { return verbs_; }
   [[nodiscard]] const std::vector<ir::Word>& words() const { return words_; }
-  // Bit v: verb v is one of the actuator's, which is at `place`.
+  // Bit v: verb v is one of the verbs of the actuator at `place`.
   [[nodiscard]] std::uint32_t verbs_of(const ActuatorConfig& actuator, std::size_t place) const;
 
 private:
@@ -73,7 +72,7 @@ private:
   std::map<std::size_t, std::uint8_t> actuators_;
   std::map<std::size_t, std::uint8_t> groups_;
   std::map<std::size_t, std::uint8_t> motion_groups_;
-  std::set<std::size_t> performers_;  // actuators that are part of a MOTION …
+  std::set<std::size_t> performers_;  // actuators in a MOTION …
   std::set<std::size_t> followers_;   // … that FOLLOW
   std::vector<ir::Verb> verbs_;       // in the order of first use
   std::vector<ir::Word> words_;
@@ -85,9 +84,9 @@ private:
 
 class Strings {
 public:
-  // Equal strings, and strings that end another, share their place.
+  // Equal strings share their place, and so does a string that another one ends with.
   [[nodiscard]] std::uint16_t offset(std::string_view text);
-  // Where the labels' offsets stand, one after another; equal rows share their place.
+  // The index of the first of the labels' offsets, which are consecutive; equal rows share their place.
   [[nodiscard]] std::uint16_t row(const std::vector<std::string>& labels);
 
   [[nodiscard]] const std::string& text() const { return text_; }
@@ -96,16 +95,16 @@ public:
 private:
   // A string that one or more others end with.
   struct Ending {
-    std::size_t end = 0;                     // of the first one of them: where its zero stands
-    std::map<char, std::uint32_t> longer{};  // places in endings_, by the letter in front
+    std::size_t end = 0;                     // offset of the zero of the first such string
+    std::map<char, std::uint32_t> longer{};  // indexes in endings_, by the letter in front
   };
 
   std::string text_;
-  std::vector<Ending> endings_;  // a tree; its root is the empty one
+  std::vector<Ending> endings_;  // a tree; its root is the empty string
   std::vector<std::uint16_t> labels_;
 };
 
-// Where `row` stands in `list`; it is put at the end if it is nowhere yet.
+// The index of `row` in `list`; appends it if it is not there yet.
 template <typename Item>
 std::uint16_t place_row(std::vector<Item>& list, const std::vector<Item>& row) {
   auto place = std::search(list.begin(), list.end(), row.begin(), row.end());
@@ -115,21 +114,20 @@ std::uint16_t place_row(std::vector<Item>& list, const std::vector<Item>& row) {
 
 // ---- timers
 //
-// The timer section under construction: one timer for each time word of the code, in the order of
-// the code.
+// The timer section under construction: one timer for each time word, in the order of the code.
 
 [[nodiscard]] vm::TimerKind timer_kind(Operation time_word);
 
 class Timers {
 public:
-  // A new timer for the time word; its place.
+  // Adds a timer for the time word; returns its index.
   [[nodiscard]] std::size_t add(const Expression& time_word);
 
   [[nodiscard]] const std::vector<vm::Timer>& records() const { return records_; }
 
 private:
   std::vector<vm::Timer> records_;
-  std::uint32_t memory_ = 0;  // words that the timers so far need
+  std::uint32_t memory_ = 0;  // words that the timers need so far
 };
 
 }  // namespace robosync::compiler

@@ -7,8 +7,7 @@
 namespace robosync::compiler {
 namespace {
 
-// Shows which rules make the step costly. One object alone may cost more than can be counted: that
-// is `span`.
+// Reports the rules that make the step expensive. A single object may cost more than can be counted; then `span` is its place.
 void report_costly_step(const Emitted& emitted, Span span, Diagnostics& diagnostics) {
   vm::Image image;
   const bool whole = vm::view_image(emitted.image, image);
@@ -41,7 +40,7 @@ std::string too_much(std::size_t count, const std::string& of_what, std::size_t 
          std::to_string(limit);
 }
 
-// Of the three sums that only the whole image has: the one that is too large.
+// Tells which of the three sums over the whole image is too large.
 std::string too_many(const Emitted& emitted) {
   vm::Image image;
   if (!vm::view_image(emitted.image, image)) return {};
@@ -61,7 +60,7 @@ std::string too_many(const Emitted& emitted) {
                                   : "";
 }
 
-// What a refusal means to the writer of a program that is too large; empty for all others.
+// Explains a refusal to the author of a program that is too large; empty for other refusals.
 std::string too_large(vm::Refusal refusal, const Emitted& emitted) {
   switch (refusal) {
     case vm::Refusal::too_large:

@@ -1,4 +1,4 @@
-// One entry of "actuators".
+// Reads one entry of "actuators".
 #include <algorithm>
 #include <string>
 #include <unordered_set>
@@ -12,7 +12,7 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr vm::Value kDefaultSoundLength = 1 * vm::kScale;  // the player's own, in seconds
+constexpr vm::Value kDefaultSoundLength = 1 * vm::kScale;  // the player's own default, in seconds
 
 void read_position_range(const json::Value& value, ActuatorConfig& actuator,
                          Diagnostics& diagnostics) {
@@ -36,7 +36,7 @@ void read_position_range(const json::Value& value, ActuatorConfig& actuator,
   actuator.max = range->high;
 }
 
-// Each takes the place of the one of the same name before it.
+// Each word replaces an earlier one of the same name.
 void put_words(std::vector<WordConfig> words, ActuatorConfig& actuator) {
   NameIndex last;
   for (std::size_t i = words.size(); i > 0; --i)
@@ -134,7 +134,7 @@ void report_panel_keys(const Fields& fields, Diagnostics& diagnostics) {
           .label(value->span);
 }
 
-// A program takes as long as it will with the real one.
+// A program takes as long as it would with the real actuator.
 void make_virtual(ActuatorConfig& actuator) {
   const vm::DriverId real = actuator.driver;
   const bool shows = vm::drives_lights(real) || vm::drives_screen(real) || vm::drives_panel(real);
@@ -147,7 +147,7 @@ void make_virtual(ActuatorConfig& actuator) {
                                                     : vm::VirtualOutput::level);
 }
 
-// What moves by power alone must not hold.
+// An actuator that would keep running on power alone must not hold.
 void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   actuator.safe = read_release(value, diagnostics).value_or(actuator.safe);
   if (actuator.safe == vm::Release::rest && vm::drives_channel(actuator.driver)) {

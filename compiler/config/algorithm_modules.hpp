@@ -1,5 +1,5 @@
-// What robot.json may say under "algorithms": the modules that a robot's firmware has, those in files, and those that run on a
-// computer beside the robot. Who compiles hands them in.
+// What robot.json may name under "algorithms": the modules of the robot's firmware, modules in files, and modules that run on a
+// companion computer. The caller of the compiler supplies them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace robosync::compiler {
 
 struct ModuleInput {
   std::string name;
-  std::optional<vm::Dimension> dimension;  // nothing: any
+  std::optional<vm::Dimension> dimension;  // nullopt: any
 };
 
 struct ModuleOutput {
@@ -22,45 +22,44 @@ struct ModuleOutput {
   vm::Dimension dimension{};
   vm::Value min = 0, max = 0;
   std::vector<std::string> labels;  // as in ChannelConfig
-  bool learns_words = false;        // likewise
-  bool is_taught =
-      false;  // behind its labels come the words of a file, which robot.json names as "words"
+  bool learns_words = false;        // as in ChannelConfig
+  bool is_taught = false;  // robot.json names a file of "words", which are added after its labels
 };
 
 struct ModuleParameter {
   std::string name;
-  std::optional<vm::Dimension> dimension;  // nothing: the unit of the first input
-  vm::Value usual = 0;                     // where robot.json says nothing
+  std::optional<vm::Dimension> dimension;  // nullopt: the unit of the first input
+  vm::Value usual = 0;                     // if robot.json gives no value
   vm::Value min = 0, max = 0;
 };
 
 struct AlgorithmModule {
   std::string name;
-  std::vector<ModuleInput> inputs;  // at least one, of a module that runs on the board
+  std::vector<ModuleInput> inputs;  // at least one if the module runs on the board
   std::vector<ModuleOutput> outputs;
   std::vector<ModuleParameter> parameters;
   std::uint16_t shortest_period_ms = 0, longest_period_ms = 0;
-  std::uint16_t usual_period_ms = 0;  // of an input that is fed, where robot.json says none
-  // What it reads of the computer beside the robot, on which it runs: "camera". Empty: it runs on the board.
+  std::uint16_t usual_period_ms = 0;  // without a rate: on a companion, or for a fed input
+  // The device of the companion computer that the module reads: "camera". Empty: the module runs on the board.
   std::string device{};
 };
 
 struct ModuleInFile {
-  const AlgorithmModule* module = nullptr;  // until the next file is asked for
+  const AlgorithmModule* module = nullptr;  // valid until the next file is loaded
   std::uint8_t number = 0;                  // in the image
-  std::string why_not;                      // where there is no module
+  std::string why_not;                      // if there is no module
 };
 
 struct WordsInFile {
   std::vector<std::string> words;
-  std::string why_not;  // where there are none: what is wrong, about the file
+  std::string why_not;  // if there are no words: what is wrong with the file
 };
 
 struct AlgorithmModules {
-  std::span<const AlgorithmModule> firmware;  // the number in the image is the place in the list
-  ModuleInFile (*in_file)(const std::string& path) = nullptr;  // null: nobody loads files
+  std::span<const AlgorithmModule> firmware;  // the index is the module's number in the image
+  ModuleInFile (*in_file)(const std::string& path) = nullptr;  // null: the caller loads no files
   std::span<const AlgorithmModule> companion;                  // these have a device
-  // Null: nobody reads them; then any word that a program compares with is taken for one of them.
+  // Null: the caller reads no files of words. Then every word that a program compares with is accepted.
   WordsInFile (*words_in_file)(const std::string& path) = nullptr;
 };
 

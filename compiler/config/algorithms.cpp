@@ -16,7 +16,7 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::string_view kWordsKey = "words";
-constexpr int kStalePeriods = 5;  // of a companion's channels, as of those that are sampled
+constexpr int kStalePeriods = 5;  // of a companion's channels; the same as for sampled channels
 
 class AlgorithmReader {
 public:
@@ -55,7 +55,7 @@ private:
     return true;
   }
 
-  // For the board it is a sensor that is fed.
+  // To the board it is a fed sensor.
   bool add_on_companion(const Spelled& name) {
     check_device();
     SensorConfig sensor;
@@ -77,7 +77,7 @@ private:
 
   // ---- which module
 
-  // Where it is to run, if `on` says so.
+  // Reads `on`, if it is there: where the module runs.
   bool read_place() {
     on_ = fields_.find("on");
     if (on_ == nullptr) return true;
@@ -103,7 +103,7 @@ private:
     return (folder_ / path).lexically_normal().string();
   }
 
-  // Somebody may be without one of a robot's files, and yet look at the rest.
+  // A missing file is only a warning, so that the rest of the robot can still be checked.
   bool is_missing(const Spelled& name, const json::Value& path) {
     std::error_code error;
     if (path.kind != json::Kind::string || std::filesystem::exists(in_folder(path.text), error))
@@ -117,7 +117,7 @@ private:
     return true;
   }
 
-  // `rsc new --module` gives a robot what makes it.
+  // `rsc new --module` adds the CMakeLists.txt that builds the module.
   std::string how_to_make() const {
     std::error_code error;
     if (!std::filesystem::exists(folder_ / "CMakeLists.txt", error))
@@ -183,7 +183,7 @@ private:
     return module_ != nullptr && runs_where_it_should();
   }
 
-  // Those of the place that robot.json names, or all.
+  // Suggests the modules of the place that `on` names, or of both places.
   void report_unknown_module(const json::Value& value) {
     std::vector<std::string> known;
     if (!wants_companion_.value_or(false)) known = names_of(modules_.firmware);
@@ -199,7 +199,7 @@ private:
       d.helps("modules: " + list_names(known));
   }
 
-  // ---- what it reads
+  // ---- its input
 
   const SensorConfig* find_input() {
     const auto* value = fields_.require("input", shown());
@@ -207,7 +207,7 @@ private:
     input_span_ = value->span;
     for (const SensorConfig& sensor : robot_.sensors)
       if (same_name(sensor.name.text, value->text)) return usable(sensor);
-    if (!robot_.complete) return nullptr;  // its entry may be what is wrong
+    if (!robot_.complete) return nullptr;  // the mistake may be in its entry
     std::vector<std::string> known;
     for (const SensorConfig& sensor : robot_.sensors)
       if (!is_algorithm(sensor)) known.push_back(sensor.name.text);
@@ -230,7 +230,7 @@ private:
     return nullptr;
   }
 
-  // Its first channels, in their order.
+  // The module reads the sensor's first channels, in their order.
   bool can_read(const SensorConfig& sensor) {
     const std::size_t needed = module_->inputs.size();
     if (sensor.channels.size() < needed) {
@@ -263,7 +263,7 @@ private:
     return false;
   }
 
-  // Of a module on a companion: what it reads there. There is one of each.
+  // A module on a companion reads one device there. There is one of each kind, so `input` may be left out.
   void check_device() {
     const auto* value = fields_.find("input");
     if (value == nullptr || !read_text(*value, diagnostics_)) return;
@@ -275,9 +275,9 @@ private:
         .helps("write \"" + module_->device + "\", or leave `input` out");
   }
 
-  // ---- how often
+  // ---- its rate
 
-  // That of its input; of one that is fed, its own.
+  // The period of its input; if the input is fed, its own.
   std::uint16_t period(const SensorConfig& input) {
     const auto* rate = fields_.find("rate");
     const bool fed = input.driver == vm::DriverId::virtual_sensor || input.period_ms == 0;
@@ -292,7 +292,7 @@ private:
     return period_in_range(fed ? module_->usual_period_ms : input.period_ms, input_span_);
   }
 
-  // `usual` at `span`, or what `rate` says.
+  // Takes `period` unless there is a `rate`. A period out of range is reported, at `span` if there is no `rate`.
   std::uint16_t period_in_range(std::uint16_t period, Span span) {
     const auto* rate = fields_.find("rate");
     if (rate != nullptr) period = read_rate(*rate, diagnostics_).value_or(period);
@@ -313,7 +313,7 @@ private:
 
   // ---- its parameters
 
-  // `unit`: of those that are measured in that of the input.
+  // `unit`: for parameters that are measured in the unit of the input.
   std::vector<vm::Value> config(const Unit& unit) {
     std::vector<vm::Value> values;
     for (const ModuleParameter& parameter : module_->parameters)
@@ -361,16 +361,16 @@ private:
         .label(value.span);
   }
 
-  // ---- what it was taught
+  // ---- its words
 
   bool is_taught() const { return std::ranges::any_of(module_->outputs, &ModuleOutput::is_taught); }
   bool is_words_file(const json::Member& member) const {
     return is_taught() && member.key == kWordsKey;
   }
 
-  // Beside robot.json, and called like the algorithm, unless `words` says otherwise.
+  // The file is next to robot.json and named after the algorithm, unless `words` names another.
   bool add_taught_words(const Spelled& name, SensorConfig& sensor) {
-    if (words_ == nullptr && has_unknown_key_) return false;  // it may be this one
+    if (words_ == nullptr && has_unknown_key_) return false;  // which may be a misspelt `words`
     if (words_ != nullptr && !read_text(*words_, diagnostics_)) return false;
     const std::string file = in_folder(words_ != nullptr ? words_->text : name.text + ".words");
     sensor.companion->words_file = file;
@@ -407,7 +407,7 @@ private:
     return channel;
   }
 
-  // It is as old as what it was made of.
+  // Its outputs go stale as soon as the first of the channels that it reads.
   std::uint16_t stale_as(const SensorConfig& input) const {
     std::uint16_t soonest = 0;
     for (std::size_t i = 0; i < module_->inputs.size(); ++i) {
@@ -427,7 +427,7 @@ private:
   const json::Value* on_ = nullptr;
   const json::Value* words_ = nullptr;
   bool has_unknown_key_ = false;
-  std::optional<bool> wants_companion_;  // as `on` says
+  std::optional<bool> wants_companion_;  // nullopt: there is no `on`
   Span input_span_;
 };
 

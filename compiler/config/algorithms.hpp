@@ -7,8 +7,8 @@
 
 namespace robosync::compiler {
 
-// Adds the algorithm behind the sensors of `robot`, which have been read, as one more sensor: its outputs are that one's
-// channels. False when there is an entry that cannot be used. `file`: robot.json, beside which modules in files stand.
+// Appends the algorithm to the sensors of `robot`, which have all been read. Its outputs are the channels of the new sensor.
+// Returns false if the entry cannot be used. `file`: the path of robot.json; paths of modules are relative to it.
 bool read_algorithm(const json::Value& value, const std::string& file,
                     const AlgorithmModules& modules, Robot& robot, Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// Board profiles, from their JSON.
+// Reads board profiles from their JSON.
 #include "compiler/config/boards.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ std::uint16_t read_pin(const json::Value& value, Diagnostics& diagnostics) {
   return static_cast<std::uint16_t>(read_whole(value, 0, UINT16_MAX - 1, diagnostics).value_or(0));
 }
 
-// [{"pins": [first, last], …}]: how far a program may go with an output is the board's own business. What must be known is
-// whether its pulses begin at 0, as the power of a motor does.
+// [{"pins": [first, last], …}]. The board enforces its own limits on an output. The compiler only needs to know whether its
+// pulses may start at 0, as the power of a motor does.
 std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
                                    Diagnostics& diagnostics) {
   std::vector<Board::Pins> ranges;
@@ -164,7 +164,7 @@ std::vector<std::string_view> board_names() {
 }
 
 Board board_at(std::size_t place) {
-  Diagnostics diagnostics;  // the tests hold the built-in ones to none
+  Diagnostics diagnostics;  // a test checks that built-in profiles have no mistakes
   return read_board(board_texts()[place], diagnostics);
 }
 

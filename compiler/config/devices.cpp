@@ -1,4 +1,4 @@
-// Device descriptors to templates of sensors and actuators.
+// Turns device descriptors into templates for sensors and actuators.
 #include "compiler/config/devices.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace robosync::compiler {
 namespace {
 
-// Enumerators by their names in the .def lists.
+// The enumerators, by their names in the .def lists.
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::DriverId::count_)> kDrivers = {
 #define SENSOR_DRIVER(name, ...) #name,
 #define ACTUATOR_DRIVER(name, ...) #name,
@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count
 #include "vm/params.def"
 #undef PARAM
 };
-// Those that a device can have.
+// The actions that a device can have.
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Action::perform)> kActions = {
     "move", "play", "set", "stop"};
 constexpr std::array<std::string_view, 3> kTexts = {"none", "listed", "any"};
@@ -96,7 +96,7 @@ void read_word(const json::Member& member, ActuatorConfig& actuator, Diagnostics
     actuator.words[i].verbs = verbs;
 }
 
-// How long a virtual one takes, which is what the real one would.
+// How long a virtual actuator takes: as long as the real one would.
 void read_model(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
   const Fields fields(value, Object::model, diagnostics);
   if (const auto* speed = fields.find("speed"))
@@ -153,7 +153,7 @@ void read_sensor_device(const Fields& fields, Device& device, Diagnostics& diagn
   }
 }
 
-// Most programs need few: each is read once, when it is needed.
+// Most programs need few descriptors, so each is read when it is first needed.
 template <typename Predicate>
 const Device* find_if(Predicate predicate) {
   static std::map<std::string_view, Device> read;
@@ -161,7 +161,7 @@ const Device* find_if(Predicate predicate) {
   const auto text = std::find_if(all.begin(), all.end(), predicate);
   if (text == all.end()) return nullptr;
   if (const auto known = read.find(text->name); known != read.end()) return &known->second;
-  Diagnostics diagnostics;  // the tests hold the built-in descriptors to none
+  Diagnostics diagnostics;  // a test checks that the built-in descriptors have no mistakes
   return &read.emplace(text->name, read_device(*text, diagnostics)).first->second;
 }
 

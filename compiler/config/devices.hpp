@@ -16,18 +16,18 @@ struct Device {
   std::string name;
   bool is_sensor = false;
   std::string type;         // how it is wired: "I2C"
-  bool has_driver = false;  // false: this version has none; it is fed or shown over the link
-  bool is_default = false;  // stands for its type when robot.json names no device
+  bool has_driver = false;  // false: this version has none; values go over the link
+  bool is_default = false;  // the default for its type, if robot.json names no device
   unsigned inputs = 1;
   bool has_sounds = false;
-  SensorConfig sensor;  // what robot.json's entry starts from, by kind
+  SensorConfig sensor;  // the starting values for an entry in robot.json, by kind
   ActuatorConfig actuator;
 
-  // Any register of it may be read: robot.json says which.
+  // True if any of its registers may be read: robot.json says which.
   [[nodiscard]] bool has_registers() const { return inputs == kRegisters; }
 };
 
-struct DeviceText {  // one descriptor as built in, and what it is found by
+struct DeviceText {  // one built-in descriptor, and the keys it is found by
   std::string_view name;
   std::string_view json;
   bool is_sensor = false;
@@ -36,15 +36,15 @@ struct DeviceText {  // one descriptor as built in, and what it is found by
 };
 [[nodiscard]] std::span<const DeviceText> device_texts();
 
-// Reads one descriptor. Mistakes in it are reported; the tests hold the built-in ones to none.
+// Reads one descriptor and reports its mistakes. A test checks that the built-in ones have none.
 [[nodiscard]] Device read_device(const DeviceText& text, Diagnostics& diagnostics);
 
-// A descriptor is read when it is asked for. Any case; nullptr when there is none of this kind.
+// Reads the descriptor on demand. The case of names does not matter. nullptr if there is no such device of this kind.
 [[nodiscard]] const Device* find_device(std::string_view name, bool is_sensor);
 [[nodiscard]] const Device* default_device(std::string_view type, bool is_sensor);
-// Do TO and AT say how much power it gets? Of a virtual one, too, which does what the real one will.
+// True if TO and AT set its power. Also true for a virtual actuator that replaces such a device.
 [[nodiscard]] bool gets_power(const ActuatorConfig& actuator);
-// The names of those that know `verb`, in any case. Reads every actuator's descriptor: for messages.
+// The devices that know `verb`, whose case does not matter. Reads every actuator's descriptor: for messages only.
 [[nodiscard]] std::vector<std::string> devices_with(std::string_view verb);
 
 }  // namespace robosync::compiler

@@ -1,4 +1,4 @@
-// What sensors and actuators have in common: a name, a type, a device.
+// What entries of sensors and actuators share: a name, a type, a device.
 #include "compiler/config/entries.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string_view owner_of(std::string_view part) {
   return {};
 }
 
-// A part of a board where none is named, which is said once, or a wrong one, which has been said.
+// Reports a part of a board if robot.json names no board, once. A wrong board has already been reported.
 void report_no_board(const json::Value& value, std::string_view owner, const Board& board,
                      Diagnostics& diagnostics) {
   const std::string message = "robot.json does not say which board this robot has";
@@ -69,7 +69,7 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
     d.helps("known devices: " + list_names(candidates));
 }
 
-// The device that "device" names, if there is one of this kind.
+// The device that "device" names, if it is of this kind.
 const Device* named_device(const json::Value& value, const Board& board, bool is_sensor,
                            Diagnostics& diagnostics) {
   if (!read_text(value, diagnostics)) return nullptr;
@@ -124,15 +124,15 @@ const Board::Part* find_part(const Fields& fields, const Board& board, bool is_s
   return part != nullptr && is_kind(*part, is_sensor) ? part : nullptr;
 }
 
-// Without "type" it is that of the device. A part of another board is wired as well: that it is not here is said by
-// choose_device().
+// Without "type", the device determines it. A part of another board needs no wiring either; choose_device() reports that it is
+// not on this board.
 const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_sensor,
                               Diagnostics& diagnostics) {
   const auto* named = fields.find("device");
   const Device* device = named == nullptr
                              ? nullptr
                              : find_device(part != nullptr ? part->device : named->text, is_sensor);
-  // What is no device is said by choose_device().
+  // choose_device() reports an unknown device.
   if (fields.find("type") == nullptr && named != nullptr)
     return device != nullptr ? type_of(*device) : nullptr;
   if (named != nullptr && device == nullptr && find_device(named->text, !is_sensor) != nullptr)
@@ -145,7 +145,7 @@ const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_s
                                std::string(type->name))
       .label(named->span)
       .helps("its `type` can be left out");
-  return nullptr;  // whose keys these are, nobody knows
+  return nullptr;  // so foreign keys cannot be checked
 }
 
 const Device& virtual_device(bool is_sensor) {

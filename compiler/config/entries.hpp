@@ -1,4 +1,4 @@
-// Entries of "sensors" and "actuators" in robot.json (sensors.cpp, actuators.cpp), and what they have in common.
+// Entries of "sensors" and "actuators" in robot.json (sensors.cpp, actuators.cpp), and what they share.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace robosync::compiler {
 
-// Always gives a usable entry, so that one mistake does not make its name unknown; nothing when it
-// has no name.
+// Returns nullopt only if the entry has no name. Otherwise the entry is usable, so that one mistake does not make its name
+// unknown.
 [[nodiscard]] std::optional<SensorConfig> read_sensor(const json::Value& value,
                                                       WiringReader& wiring,
                                                       Diagnostics& diagnostics);
@@ -22,37 +22,37 @@ namespace robosync::compiler {
                                                           WiringReader& wiring,
                                                           Diagnostics& diagnostics);
 
-// One channel of a sensor. Overwrites in `channel` what `value` says; the rest stays as the device's descriptor has it.
+// Reads one channel of a sensor. Overwrites in `channel` what `value` sets; the rest keeps the values of the device descriptor.
 // `inputs`: how many inputs the device has.
 void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& channel,
                   Diagnostics& diagnostics);
 
-// How the lights of a panel lie, and how they are lit.
+// Reads the layout of a panel's lights, and their colour.
 [[nodiscard]] PanelConfig read_panel(const Fields& fields, Diagnostics& diagnostics);
 inline constexpr std::int64_t kUsualPanelPercent = 10;
 inline constexpr std::int64_t kMostPanelPercent = 20;
 [[nodiscard]] std::vector<std::string_view> panel_colors();
-// The keys that say so, which nothing else has.
+// The keys that only a panel has.
 [[nodiscard]] std::span<const std::string_view> panel_keys();
 
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,
                                                Diagnostics& diagnostics);
 
-// Which of the board's own parts an entry means by its "device"; null: none.
+// The part of the board that the entry's "device" names; null: none.
 [[nodiscard]] const Board::Part* find_part(const Fields& fields, const Board& board,
                                            bool is_sensor);
-// Its "type", which for a part need not be said. As read_type().
+// The type of an entry; a part of the board may leave it out. Reports like read_type().
 [[nodiscard]] const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_sensor,
                                             Diagnostics& diagnostics);
 
-// The device an entry means: the one it names, or the generic one of its type. Says what it assumed
-// (N0001) and when there is no driver (W0212). What has no type is virtual. Null: it names one that nobody knows, which is
-// said; what else stands in the entry may be right for the one that is meant.
+// The device of an entry: the one it names, or else the generic one of its type. Without a type it is virtual. Reports an assumed
+// device (N0001) and a device without a driver (W0212). Null if the named device is unknown, which is reported; the rest of the
+// entry may fit the device that was meant.
 [[nodiscard]] const Device* choose_device(const Fields& fields, const WiringType* type,
                                           const Spelled& name, const Board& board, bool is_sensor,
                                           Diagnostics& diagnostics);
-// In place of that one.
+// The replacement for an unknown device.
 [[nodiscard]] const Device& virtual_device(bool is_sensor);
 
 }  // namespace robosync::compiler

@@ -1,5 +1,5 @@
-// The members of one JSON object, checked against keys.def: unknown and repeated keys are reported,
-// keys that this version does not use yet are warned about.
+// The members of one JSON object, checked against keys.def: unknown and repeated keys are errors, keys that this version does not
+// use yet get a warning.
 #pragma once
 
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace robosync::compiler {
 
-// Which object of robot.json, of a device descriptor or of a board profile it is.
+// The kinds of objects in robot.json, in device descriptors and in board profiles.
 enum class Object : std::uint8_t {
   robot,
   sensor,
@@ -47,13 +47,13 @@ struct Key {
 
 class Fields {
 public:
-  // Reports at once what is wrong with the keys. A `value` that is no object is reported too and
-  // has no fields. `value` must outlive this.
+  // Immediately reports what is wrong with the keys. A `value` that is not an object is reported too and has no fields. `value`
+  // must outlive this.
   Fields(const json::Value& value, Object object, Diagnostics& diagnostics);
 
-  [[nodiscard]] const json::Value* find(std::string_view key) const;  // nullptr when not there
-  // As find(), but reports E0206 when it is not there, unless a key is unknown, which it may be; `what` names the object:
-  // "a sensor".
+  [[nodiscard]] const json::Value* find(std::string_view key) const;  // nullptr if it is missing
+  // As find(), but reports E0206 if the key is missing. If some key is unknown, it may be this one misspelt: then nothing is
+  // reported. `what` names the object: "a sensor".
   [[nodiscard]] const json::Value* require(std::string_view key, std::string_view what);
 
 private:
@@ -64,9 +64,9 @@ private:
   bool has_unknown_key_ = false;
 };
 
-// Reports a key that stands twice in `object`, whatever its keys are (channels, groups, speeds).
+// Reports keys that appear twice in `object`, whose keys can be any names (channels, groups, speeds).
 void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics);
-// True if `value` has the kind; reports E0204 otherwise.
+// True if `value` has the kind; otherwise reports E0204.
 [[nodiscard]] bool expect_kind(const json::Value& value, json::Kind kind, Diagnostics& diagnostics,
                                std::string_view example = {});
 

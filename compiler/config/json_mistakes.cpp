@@ -1,4 +1,4 @@
-// See json_mistakes.hpp. The parser's own words are asked only whether a colon was expected, and whether a number was too large.
+// See json_mistakes.hpp. The parser's message is only used to tell whether a colon was expected, or a number was too large.
 #include "compiler/config/json_mistakes.hpp"
 
 #include <algorithm>
@@ -24,10 +24,10 @@ bool is_word(char c) {
          c == '-';
 }
 
-// What the parser did not like, and the last character before it that is not white space.
+// The text that the parser rejected, and the last character before it that is not white space.
 struct WrongText {
   std::size_t begin = 0, end = 0;
-  std::size_t before = 0;  // its index; only if `previous` is not 0
+  std::size_t before = 0;  // its index; valid if `previous` is not 0
   char previous = 0;
 };
 
@@ -105,7 +105,7 @@ std::string describe_character(const Mistake& mistake, const WrongText& wrong) {
   return "this is not JSON here";
 }
 
-// ---- mistakes that can be mended
+// ---- mistakes with a suggested fix
 
 Span span_of(const Mistake& mistake, std::size_t begin, std::size_t end) {
   return {mistake.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
@@ -118,7 +118,7 @@ bool is_curly(char32_t point) {
   return std::ranges::find(kCurlyQuotes, point) != kCurlyQuotes.end();
 }
 
-// A string in curly quotes, as far as the second one in its line.
+// A string in curly quotes that ends on the same line.
 bool is_in_curly_quotes(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   const utf8::CodePoint opening = utf8::decode(mistake.text, wrong.begin);
   if (!is_curly(opening.value)) return false;
@@ -140,7 +140,7 @@ bool is_in_curly_quotes(const Mistake& mistake, const WrongText& wrong, Diagnost
   return true;
 }
 
-// `True`, as Python has it.
+// `True`, as in Python.
 bool is_foreign_word(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   const std::string word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
   const Span here = span_of(mistake, wrong.begin, wrong.end);
@@ -163,7 +163,7 @@ bool is_foreign_word(const Mistake& mistake, const WrongText& wrong, Diagnostics
   return true;
 }
 
-// `"name": "cars, "type": …`: the text goes on to the quote that should begin the next one.
+// `"name": "cars, "type": …`: the string runs on to the opening quote of the next one.
 bool is_unclosed_string(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   const std::string_view text = mistake.text;
   const bool touches = wrong.previous == '"' && wrong.before + 1 == wrong.begin && wrong.begin >= 2;
@@ -178,13 +178,13 @@ bool is_unclosed_string(const Mistake& mistake, const WrongText& wrong, Diagnost
   return true;
 }
 
-// ---- brackets that do not fit
+// ---- brackets that do not match
 
 char closer_of(char opener) {
   return opener == '{' ? '}' : ']';
 }
 
-// Do the brackets outside of strings fit?
+// True if the brackets outside strings match.
 bool is_balanced(std::string_view text) {
   std::string open;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -202,7 +202,7 @@ bool is_balanced(std::string_view text) {
   return open.empty();
 }
 
-// `["0deg", "90deg"}`: which of the two mends is meant, the rest of the text says: with one of them all brackets fit.
+// `["0deg", "90deg"}`: there are two possible fixes. Suggests the one with which all brackets of the text match.
 bool is_wrong_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   const char c = mistake.text[wrong.begin];
   if (!mistake.open_span || wrong.previous == ',' || wrong.previous == ':' ||

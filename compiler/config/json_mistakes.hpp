@@ -1,5 +1,5 @@
-// What is wrong with a text that is no JSON, in plain words: from a place and the characters around it to one E0201, with the mend
-// where there is one.
+// Explains in plain words what is wrong with text that is not JSON. Reports one E0201 from the place and the characters around
+// it, with a suggested fix if there is one.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@ namespace robosync::compiler::json {
 struct Mistake {
   std::string_view text;
   FileId file = 0;
-  std::size_t good_until = 0;     // everything before was read
-  std::size_t stopped_at = 0;     // bytes the parser had read when it gave up
-  std::string_view reason;        // the parser's own words
+  std::size_t good_until = 0;     // everything before it was read
+  std::size_t stopped_at = 0;     // bytes that the parser had consumed when it gave up
+  std::string_view reason;        // the parser's own message
   std::optional<Span> open_span;  // the innermost object or list not yet closed
 };
 

@@ -1,4 +1,4 @@
-// JSON text to positioned tree. Assumes nothing about the text; every mistake becomes one E0201.
+// Turns JSON text into a tree with source positions. The text may be anything; every mistake becomes one E0201.
 #include "compiler/config/json_reader.hpp"
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace robosync::compiler::json {
 namespace {
 
-// Receives nlohmann's events and builds the tree. The methods' names and results are nlohmann's.
+// Receives nlohmann's events and builds the tree. nlohmann defines the method names and return values.
 class Builder {
 public:
   Builder(std::string_view text, FileId file, Diagnostics& diagnostics)
@@ -48,7 +48,7 @@ public:
   std::optional<Value> take() { return std::move(root_); }
 
 private:
-  // The place of the token that the event is about; moves the cursor behind it.
+  // The span of the current event's token. Moves the cursor past it.
   Span next_token() {
     while (cursor_ < text_.size() &&
            std::string_view(" \t\r\n,:").find(text_[cursor_]) != std::string_view::npos)

@@ -1,7 +1,7 @@
-// Reads JSON text into a tree that knows where every value stands.
+// Reads JSON text into a tree in which every value has its source position.
 //
-// nlohmann's parser does the reading; its SAX events arrive in the order of the text, so a cursor
-// that walks along finds each token's place. Numbers stay as written: nothing is rounded here.
+// nlohmann's parser does the reading. Its SAX events arrive in the order of the text, so a cursor that moves along finds each
+// token's place. Numbers keep their digits: nothing is rounded here.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ struct Member {
 
 inline constexpr std::size_t kMaxDepth = 32;
 
-// Nothing when the text is not JSON or nested deeper than kMaxDepth; that has then been reported.
+// nullopt if the text is not JSON or is nested deeper than kMaxDepth; either is reported.
 [[nodiscard]] std::optional<Value> read(const SourceMap& sources, FileId file,
                                         Diagnostics& diagnostics);
 

@@ -1,5 +1,4 @@
-// Names, as robot.json and RSL share them: case and underscores do not matter (touchLevel =
-// touch_level = TOUCH_LEVEL).
+// Names in robot.json and RSL ignore case and underscores (touchLevel = touch_level = TOUCH_LEVEL).
 #pragma once
 
 #include <cstddef>
@@ -16,10 +15,10 @@ namespace robosync::compiler {
 [[nodiscard]] std::string fold_name(std::string_view name);  // "touchlevel"
 [[nodiscard]] bool same_name(std::string_view a, std::string_view b);
 
-// Where each name of a list stands in it. The names must outlive this.
+// Maps each name of a list to its index. The names must outlive this.
 class NameIndex {
 public:
-  // True if the name is new; otherwise its first place stays.
+  // True if the name is new; otherwise its first index stays.
   bool add(std::string_view name, std::size_t place) { return places_.emplace(name, place).second; }
   [[nodiscard]] bool empty() const { return places_.empty(); }
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const {
@@ -37,7 +36,7 @@ private:
   std::unordered_map<std::string_view, std::size_t, Hash, Same> places_;
 };
 
-// Of the entries of a list, each of which has a name and its place in robot.json.
+// Indexes the entries of a list by their names.
 template <typename List>
 NameIndex index_of(const List& list) {
   NameIndex index;
@@ -46,7 +45,7 @@ NameIndex index_of(const List& list) {
   return index;
 }
 
-// A text and where it stands.
+// A text and its source position.
 struct Spelled {
   std::string text;
   Span span;

@@ -1,4 +1,4 @@
-// The lights of a panel: how they lie, and in which colour they are lit.
+// The lights of a panel: their layout and their colour.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -32,7 +32,7 @@ std::int64_t read_percent(const json::Value& value, Diagnostics& diagnostics) {
   return read_whole(value, 1, kMostPanelPercent, diagnostics).value_or(kUsualPanelPercent);
 }
 
-// What is lit at all stays so.
+// A part of the colour that is not 0 stays at least 1.
 std::uint32_t dimmed(std::uint8_t part, std::int64_t percent) {
   const auto rest = static_cast<std::uint32_t>(part * percent / 100);
   return part == 0 ? 0 : std::max(rest, 1U);

@@ -1,4 +1,3 @@
-// See robot.hpp.
 #include "compiler/config/robot.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-// The robot, as robot.json and the device descriptors describe it: what sema resolves names
-// against and codegen writes into the image. Values are thousandths of the canonical unit
-// (vm/value.hpp) throughout.
+// The robot, as robot.json and the device descriptors describe it. Sema resolves names against it, and codegen writes it into the
+// image. Values are thousandths of the canonical unit (vm/value.hpp) throughout.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +19,8 @@ constexpr std::size_t kMaxLabels = 255;  // of a channel
 
 struct ChannelConfig {
   Spelled name;
-  const Unit* unit = nullptr;  // never null once read; bare numbers are in it
-  Span unit_span;              // where robot.json says the unit, or else the channel or sensor
+  const Unit* unit = nullptr;  // never null once read; the unit of numbers without one
+  Span unit_span;              // where robot.json gives the unit, or else the channel or sensor
   std::uint8_t input = 0;
   vm::Value min = vm::kValueMin;
   vm::Value max = vm::kValueMax;
@@ -30,29 +29,29 @@ struct ChannelConfig {
   Scale scale;                  // one raw count
   std::uint16_t period_ms = 0;  // 0: only when fed
   std::uint16_t stale_ms = 0;   // 0: never stale
-  // Of a channel whose values are words: value n is label n. Its range is then 0 … labels - 1.
+  // For a channel whose values are words: value n is label n. Its range is then 0 … labels - 1.
   std::vector<std::string> labels;
-  bool truth = false;  // its two labels mean false and true: it may stand alone as a condition
-  // Its words are those that the program compares it with: they become labels, behind these, when the program is analysed.
+  bool truth = false;  // its two labels mean false and true: it may be a condition on its own
+  // The words that the program compares it with become labels, after these, when the program is analysed.
   bool learns_words = false;
 
   void add_label(std::string label);  // the range grows with it
 };
 
-// What makes a sensor an algorithm: its channels are the outputs of a module.
+// Makes a sensor an algorithm: its channels are the outputs of a module.
 struct AlgorithmConfig {
   std::uint8_t module = 0;        // its number (algorithm_modules.hpp)
-  std::size_t input = 0;          // the sensor that it reads, a place in Robot::sensors
-  std::size_t inputs = 0;         // … of which so many channels, the first ones
+  std::size_t input = 0;          // the sensor that it reads: an index in Robot::sensors
+  std::size_t inputs = 0;         // how many channels of it, from the first
   std::vector<vm::Value> config;  // its parameters, all of them
 };
 
-// What makes a fed sensor the outputs of a module that runs on a computer beside the robot.
+// Makes a fed sensor the outputs of a module that runs on a companion computer.
 struct CompanionConfig {
   std::string module;
-  std::uint16_t period_ms = 0;    // how often it says what it knows
+  std::uint16_t period_ms = 0;    // how often it sends its results
   std::vector<vm::Value> config;  // its parameters, all of them
-  std::string words_file;         // what it was taught stands there; empty: it is not taught
+  std::string words_file;         // the file with the words it was taught; empty: it is not taught
 };
 
 struct SensorConfig {
@@ -70,7 +69,7 @@ struct SensorConfig {
 enum class Texts : std::uint8_t {
   none,    // the verb takes no string
   listed,  // one of the actuator's sounds
-  any      // whatever the program says
+  any      // any text
 };
 
 struct WordConfig {  // SLOWLY, or a sound
@@ -78,8 +77,8 @@ struct WordConfig {  // SLOWLY, or a sound
   vm::Param param{};
   vm::Value value = 0;
   bool text = false;                  // written in quotes
-  std::optional<vm::Value> duration;  // of a sound, when it is not the player's own default
-  std::vector<std::string> verbs{};   // it belongs to; none: to all that take its parameter
+  std::optional<vm::Value> duration;  // of a sound, if not the player's default
+  std::vector<std::string> verbs{};   // that it belongs to; empty: all that take its parameter
 };
 
 struct VerbConfig {
@@ -87,13 +86,13 @@ struct VerbConfig {
   vm::Action action{};
   std::uint8_t takes = 0;  // bit p: takes vm::Param p
   Texts texts = Texts::none;
-  const Unit* by_unit = nullptr;  // of BY, where it is not the actuator's own
+  const Unit* by_unit = nullptr;  // of BY, if it is not the actuator's own
 
   [[nodiscard]] bool has(vm::Param param) const {
     return (takes >> static_cast<unsigned>(param) & 1u) != 0;
   }
   [[nodiscard]] bool goes_with(const WordConfig& word) const;
-  // As in the image: what it takes, and what carries the values of a text.
+  // As in the image: the parameters it takes, and those that carry the values of a text.
   [[nodiscard]] std::uint8_t carries() const {
     std::uint8_t params = takes;
     for (const vm::Param param : vm::kTextParams)
@@ -103,7 +102,7 @@ struct VerbConfig {
   }
 };
 
-// A chip that gives servos their pulses, by its place.
+// A chip that generates pulses for servos, identified by its address.
 struct ServoChip {
   std::uint8_t bus = 0;
   std::uint16_t address = 0;
@@ -112,10 +111,10 @@ struct ServoChip {
   bool operator==(const ServoChip&) const = default;
 };
 
-// Of a panel of lights, as the image has it (vm::is_panel()).
+// A panel of lights, encoded as in the image (vm::is_panel()).
 struct PanelConfig {
   std::uint8_t lay = 0;
-  vm::Value color = 0;  // of a lit one
+  vm::Value color = 0;  // of a light that is on
 };
 
 struct ActuatorConfig {
@@ -123,7 +122,7 @@ struct ActuatorConfig {
   std::string device;  // its descriptor in stdlib/devices/
   vm::DriverId driver{};
   std::uint8_t bus = 0;
-  std::uint16_t pin = 0;  // or channel of its chip, or address of its display
+  std::uint16_t pin = 0;  // or the channel of its chip, or the address of its display
   std::optional<ServoChip> chip;
   std::optional<PanelConfig> panel;
   vm::Release on_release = vm::Release::hold;
@@ -136,9 +135,9 @@ struct ActuatorConfig {
   vm::Value speed_limit = vm::kValueMax;
   Span limit_span;
   std::uint16_t usual_speed =
-      0;                      // of a virtual one, in whole units a second; 0: it is told how long
-  bool sweeps = false;        // … without a target, over its range and back
-  vm::Value word_length = 0;  // of speech, a word in thousandths of a second; 0: it does not speak
+      0;                // of a virtual one, in whole units a second; 0: the command says how long
+  bool sweeps = false;  // … without a target, across its range and back
+  vm::Value word_length = 0;  // of a spoken word, in thousandths of a second; 0: it does not speak
   std::vector<VerbConfig> verbs;
   std::vector<WordConfig> words;
 
@@ -150,31 +149,31 @@ struct ActuatorConfig {
 
 struct GroupConfig {
   Spelled name;
-  std::vector<std::size_t> members;  // places in Robot::actuators
+  std::vector<std::size_t> members;  // indexes in Robot::actuators
 };
 
 struct BehaviorConfig {
   Spelled name;
   std::optional<int> priority;
   Span priority_span;
-  std::optional<std::size_t> action;  // place in Robot::actuators or …
+  std::optional<std::size_t> action;  // index in Robot::actuators, or …
   std::optional<std::size_t> action_group;
   Span action_span;
 };
 
-// How priorities adapt (vm::Adaptation says it to the board).
+// How priorities adapt (vm::Adaptation is the form in the image).
 struct SchedulerConfig {
-  std::uint16_t alpha = 2000;  // thousandths; 0: they do not
+  std::uint16_t alpha = 2000;  // thousandths; 0: they do not adapt
   std::uint16_t window_ms = 10'000;
   std::uint8_t cap = 95;
 };
 
 inline constexpr std::int64_t kMaxSeed = 2'147'483'647;
 
-// How long a robot may wait, before its program begins, for the first reading of what SAFETY rules read.
+// How long a program waits at its start for the first readings that SAFETY rules need.
 inline constexpr std::uint16_t kSafetyStartMs = 100;
 
-// An algorithm whose module is in a file that is not there.
+// An algorithm whose module file does not exist.
 struct MissingModule {
   Spelled name;
   std::string file;
@@ -191,29 +190,29 @@ struct Robot {
   std::vector<BehaviorConfig> behaviors;
   std::optional<SchedulerConfig> scheduler;
   std::uint16_t safety_start_ms = kSafetyStartMs;
-  std::uint32_t seed = 0;            // of the random numbers; 0: not said
-  std::optional<std::size_t> board;  // its place in board_names(); nothing: not said
+  std::uint32_t seed = 0;            // of the random numbers; 0: not given
+  std::optional<std::size_t> board;  // index in board_names(); nullopt: not given
   std::map<Code, LintLevel> lints;
   std::vector<MissingModule> missing;
-  bool complete = true;  // false: something in it is wrong, which has been reported
+  bool complete = true;  // false: it has a mistake, which has been reported
 };
 
-// ---- the units that a program's author writes, by the names that its image has
+// ---- the units that the program's author uses, by the names in the image
 
 struct ActuatorUnits {
   const Unit* to = nullptr;                 // of TO and BY; null: it has no position
   const Unit* at = nullptr;                 // of AT; null: it has no speed
-  std::map<std::string, const Unit*> by{};  // of BY of the verbs that have one of their own
+  std::map<std::string, const Unit*> by{};  // of BY, for verbs with their own unit
 };
 
-// What is not in it is shown in its canonical unit.
+// Values that are not listed are shown in their canonical unit.
 struct WrittenUnits {
   std::map<std::string, const Unit*> channels;  // "sensor.CHANNEL"
   std::map<std::string, const Unit*> variables;
   std::map<std::string, ActuatorUnits> actuators;
 };
 
-// Those that robot.json says.
+// The units that robot.json gives.
 [[nodiscard]] WrittenUnits units_of(const Robot& robot);
 
 }  // namespace robosync::compiler

@@ -1,4 +1,4 @@
-// Section by section; those of sensors and actuators have files of their own.
+// Reads robot.json section by section; sensors and actuators have their own files.
 #include "compiler/config/robot_reader.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<std::string> actuator_names(const Robot& robot, bool groups) {
 
 void report_unknown_actuator(const json::Value& value, const Robot& robot, bool groups,
                              Diagnostics& diagnostics) {
-  if (!robot.complete) return;  // its entry may be what is wrong
+  if (!robot.complete) return;  // the mistake may be in its entry
   Diagnostic& d = diagnostics.report(Code::E0501, "there is no actuator `" + value.text + "`")
                       .label(value.span);
   if (!diagnostics.may_search(robot.actuators.size() + robot.groups.size())) return;
@@ -84,7 +84,7 @@ void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostic
 class BehaviorReader {
 public:
   BehaviorReader(Robot& robot, Diagnostics& diagnostics);
-  // Adds an entry to the robot, if it has a name.
+  // Adds an entry to the robot if it has a name.
   void read(const json::Value& value);
 
 private:
@@ -122,10 +122,10 @@ void BehaviorReader::read(const json::Value& value) {
 
 // ---- scheduler, safety
 
-// Of α: what a u16 of thousandths holds, in whole numbers.
+// The limit of α: the largest whole number whose thousandths fit in a u16.
 constexpr vm::Value kMaxAlpha = 65 * vm::kScale;
 
-// What it does not say is as in the paper's example.
+// Missing values get the defaults of the paper's example.
 SchedulerConfig read_scheduler(const json::Value& value, Diagnostics& diagnostics) {
   const Fields fields(value, Object::scheduler, diagnostics);
   SchedulerConfig scheduler;
@@ -187,7 +187,7 @@ void read_lints(const json::Value& value, Robot& robot, Diagnostics& diagnostics
   }
 }
 
-// ---- names that are given twice
+// ---- repeated names
 
 using NamedList = std::vector<const Spelled*>;
 
@@ -207,7 +207,7 @@ bool check_repeated(const NamedList& names, Diagnostics& diagnostics) {
   return diagnostics.all().size() == before;
 }
 
-// `touch LEVEL` may be written touchLevel: that must not be another sensor's name.
+// `touch LEVEL` may be written touchLevel, so no other sensor may have that name.
 void check_joined_names(const Robot& robot, Diagnostics& diagnostics) {
   const NameIndex sensors = index_of(robot.sensors);
   for (const SensorConfig& sensor : robot.sensors)
@@ -262,14 +262,14 @@ bool has_any(const Diagnostics& diagnostics, std::size_t from, std::span<const C
       [&](const Diagnostic& one) { return std::ranges::find(codes, one.code) != codes.end(); });
 }
 
-// Of what was reported since there were `before`, nothing makes the program miss a name, or measure in another unit.
+// True if no report after the first `before` makes the program miss a name or use another unit.
 bool names_and_units_are_known(const Diagnostics& diagnostics, std::size_t before) {
   constexpr std::array kFelt = {Code::E0202, Code::E0204, Code::E0206, Code::E0208,
                                 Code::E0209, Code::E0301, Code::E0303};
   return !has_any(diagnostics, before, kFelt);
 }
 
-// The program must call what has such a name in another way.
+// True if no name was reported that RSL cannot write. The program cannot use such a name.
 bool names_can_be_written(const Diagnostics& diagnostics, std::size_t before) {
   constexpr std::array kFelt = {Code::E0103};
   return !has_any(diagnostics, before, kFelt);

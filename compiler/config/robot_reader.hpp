@@ -1,4 +1,4 @@
-// Reads robot.json: the whole robot, with everything that is wrong reported.
+// Reads robot.json as a whole and reports everything that is wrong with it.
 #pragma once
 
 #include "compiler/config/algorithm_modules.hpp"
@@ -6,8 +6,8 @@
 
 namespace robosync::compiler {
 
-// Nothing only when the text is not JSON at all. Otherwise entries with mistakes stay in, with
-// defaults in the place of what could not be read, so that the program's names still resolve.
+// Returns nullopt only if the text is not JSON. Otherwise entries with mistakes stay in, with defaults for what could not be
+// read, so that the program's names still resolve.
 [[nodiscard]] std::optional<Robot> read_robot(const SourceMap& sources, FileId file,
                                               Diagnostics& diagnostics,
                                               const AlgorithmModules& modules = {});

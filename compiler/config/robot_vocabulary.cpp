@@ -1,4 +1,3 @@
-// See robot_vocabulary.hpp.
 #include "compiler/config/robot_vocabulary.hpp"
 
 #include <algorithm>
@@ -10,7 +9,7 @@ namespace robosync::compiler {
 
 namespace {
 
-// A value in the middle of a range, as a person would choose it: 200cm, not 201cm, of 2 … 400. A small one when there is
+// A round value in the middle of a range, as a person would choose it: 200cm, not 201cm, for 2 … 400. A small value if there is
 // no range.
 std::string middle(vm::Value low, vm::Value high, const Unit& unit) {
   constexpr vm::Value some = 3 * vm::kScale;
@@ -31,7 +30,7 @@ std::string written(const SensorConfig& sensor, const ChannelConfig& channel) {
   return sensor.name.text + " " + channel.name.text;
 }
 
-// As RSL has it: a word that could be something else stands in quotes.
+// As written in RSL: a word that could mean something else is in quotes.
 std::string word(const std::string& label) {
   const bool plain = std::ranges::all_of(label, [](char c) {
     return c == '_' || ('0' <= c && c <= '9') || ('A' <= c && c <= 'Z') || ('a' <= c && c <= 'z');
@@ -69,7 +68,7 @@ std::string said(Vocabulary::Part part, const SensorConfig& sensor, const Channe
   }
 }
 
-// The first word of the device that says this parameter, with a space before it.
+// The device's first word for this parameter, with a space before it.
 std::string word_for(const ActuatorConfig& actuator, const VerbConfig& verb, vm::Param param) {
   const auto found = std::ranges::find_if(actuator.words, [&](const WordConfig& one) {
     return one.param == param && !one.text && verb.goes_with(one);
@@ -84,14 +83,14 @@ std::string text_for(const ActuatorConfig& actuator, const VerbConfig& verb) {
   return found == actuator.words.end() ? "" : " \"" + found->name + "\"";
 }
 
-// What the verb is given: a text, a picture, a direction or a place, and how fast.
+// The arguments of the verb: a text, a picture, a direction or a place, and how fast.
 std::string arguments(const ActuatorConfig& actuator, const VerbConfig& verb, bool places) {
   if (std::string text = text_for(actuator, verb); !text.empty()) return text;
   if (std::string item = word_for(actuator, verb, vm::Param::item); !item.empty()) return item;
   std::string where = word_for(actuator, verb, vm::Param::direction);
   if ((places || where.empty()) && verb.has(vm::Param::to) && actuator.to_unit != nullptr)
     where = " TO " + middle(actuator.min, actuator.max, *actuator.to_unit);
-  if (where.starts_with(" TO") && gets_power(actuator)) return where;  // that is how fast, too
+  if (where.starts_with(" TO") && gets_power(actuator)) return where;  // which also says how fast
   return where + word_for(actuator, verb, vm::Param::at);
 }
 
@@ -137,7 +136,7 @@ std::string RobotVocabulary::command(std::string_view verb, std::string_view nam
     for (const VerbConfig& one : actuator.verbs) {
       if (!verb.empty() && !same_name(one.name, verb)) continue;
       const std::string how = arguments(actuator, one, places);
-      // Not every one of a group may reach that place.
+      // Not every actuator of a group may reach that place.
       const bool all = of_group && !how.starts_with(" TO ");
       return one.name + " " + (all ? group->name.text : actuator.name.text) + how;
     }

@@ -1,4 +1,4 @@
-// The names of a robot.json, for lines that show how something is written.
+// The names in a robot.json, for examples in messages.
 #pragma once
 
 #include "compiler/config/robot.hpp"
@@ -8,7 +8,7 @@ namespace robosync::compiler {
 
 class RobotVocabulary : public Vocabulary {
 public:
-  explicit RobotVocabulary(const Robot& robot) : robot_(robot) {}  // which must outlive it
+  explicit RobotVocabulary(const Robot& robot) : robot_(robot) {}  // must outlive this
 
   [[nodiscard]] std::string part(Part part, std::string_view name) const override;
   [[nodiscard]] std::string command(std::string_view verb, std::string_view name,

@@ -1,5 +1,5 @@
-// One entry of "sensors", and a channel of it, which a device descriptor has too. What robot.json says goes on top of the
-// descriptor's values. Of a channel the unit comes first: everything else may be written in it.
+// Reads one entry of "sensors", and a channel of it, which device descriptors have too. Values in robot.json override those of
+// the descriptor. The unit of a channel is read first, because everything else may be written in it.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kStalePeriods = 5;
 
-// `value`, a raw count in thousandths, when one count is one `unit`.
+// `value`, a raw count in thousandths, if one count is one `unit`.
 vm::Value count_in(vm::Value value, const Unit& unit) {
   constexpr unsigned kDecimals = 3;
   const auto limit = value < 0 ? vm::kValueMin : vm::kValueMax;
@@ -81,7 +81,7 @@ void read_truth(const json::Value& value, bool has_labels, ChannelConfig& channe
         .label(value.span);
 }
 
-// Words have no unit and no scale: a reading is the place of a label.
+// Words have no unit and no scale: a reading is the index of a label.
 void read_words(const Fields& fields, ChannelConfig& channel, Diagnostics& diagnostics) {
   const auto* labels = fields.find("labels");
   if (labels != nullptr) read_labels(*labels, channel, diagnostics);
@@ -145,7 +145,7 @@ void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& chan
 
 namespace {
 
-// The descriptor's channel of this name, else its first as the pattern for a new one.
+// The descriptor's channel of this name, or else its first channel as the pattern for a new one.
 ChannelConfig pattern_for(const Device& device, const json::Member& member) {
   const auto& known = device.sensor.channels;
   const auto same = std::find_if(known.begin(), known.end(), [&](const ChannelConfig& channel) {
@@ -188,7 +188,7 @@ void read_channels(const json::Value& value, const Device& device, SensorConfig&
   check_channel_names(sensor.channels, diagnostics);
 }
 
-// Of one that has other inputs all channels would be the same one.
+// Only for devices with registers: on any other device, all channels would become the same input.
 void read_register(const json::Value& value, const Device& device, SensorConfig& sensor,
                    Diagnostics& diagnostics) {
   if (!device.has_registers()) {
@@ -202,7 +202,7 @@ void read_register(const json::Value& value, const Device& device, SensorConfig&
         static_cast<std::uint8_t>(read_whole(value, 0, kRegisters - 1, diagnostics).value_or(0));
 }
 
-// What is fed is not sampled: it has no period, and is stale only if robot.json says so.
+// Fed channels are not sampled: they have no period, and go stale only if robot.json says so.
 void make_fed(SensorConfig& sensor, const json::Value* channels, Diagnostics& diagnostics) {
   sensor.driver = vm::DriverId::virtual_sensor;
   for (ChannelConfig& channel : sensor.channels) {
@@ -217,7 +217,7 @@ void make_fed(SensorConfig& sensor, const json::Value* channels, Diagnostics& di
             .label(key.value.span);
 }
 
-// Without "channels", places in messages are those of the sensor's name.
+// Without "channels", messages point to the sensor's name.
 void place_channels(SensorConfig& sensor) {
   for (ChannelConfig& channel : sensor.channels) {
     channel.name.span = sensor.name.span;
@@ -233,7 +233,7 @@ void check_place(const Fields& fields, const SensorConfig& sensor, WiringReader&
   if (vm::is_analog(sensor.driver)) wiring.check_analog(fields, place);
 }
 
-// The descriptor's own rate is one that it can keep.
+// The descriptor's own rate is always possible.
 void check_rate(const json::Value* channels, const SensorConfig& sensor, Diagnostics& diagnostics) {
   const std::uint16_t shortest = vm::min_period_ms(sensor.driver);
   if (channels == nullptr || sensor.period_ms >= shortest) return;

@@ -1,5 +1,4 @@
-// Units and exact conversion. 128-bit integers hold every intermediate: a mantissa has at most 16
-// digits, a factor 17.
+// Units and exact conversion. 128-bit integers hold every intermediate result: a mantissa has at most 16 digits, a factor 17.
 #include "compiler/config/units.hpp"
 
 #include <algorithm>
@@ -48,7 +47,7 @@ constexpr std::array kDimensions = {
 #undef DIMENSION
 };
 
-// Of each dimension the place of its canonical unit in kUnits.
+// The index in kUnits of each dimension's canonical unit.
 constexpr auto kCanonical = [] {
   std::array<std::size_t, kDimensions.size()> places{};
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -108,7 +107,7 @@ std::optional<int> read_exponent(std::string_view text) {
   return negative ? -exponent : exponent;
 }
 
-// mantissa / 10^decimals * 10^exponent with 0 … kMaxDecimals decimals, or nothing.
+// mantissa / 10^decimals * 10^exponent with 0 … kMaxDecimals decimals, or nullopt.
 std::optional<Decimal> normalise(std::int64_t mantissa, int decimals) {
   while (decimals > 0 && mantissa % 10 == 0) {
     mantissa /= 10;
@@ -133,7 +132,7 @@ std::span<const Unit> units() {
 
 namespace {
 
-// "degrees/second": of both sides by any name.
+// "degrees/second": either side may be any name of a unit.
 const Unit* find_rate(std::string_view spelling) {
   const std::size_t slash = spelling.find('/');
   if (slash == std::string_view::npos) return nullptr;
@@ -172,7 +171,7 @@ std::string_view dimension_phrase(vm::Dimension dimension) {
 std::optional<Decimal> parse_decimal(std::string_view text) {
   const bool negative = !text.empty() && text.front() == '-';
   if (negative) text.remove_prefix(1);
-  // Zeros at the end of a fraction say nothing and must not count as digits.
+  // Trailing zeros of a fraction do not count as digits.
   Decimal number;
   const std::size_t exponent_at = text.find_first_of("eE");
   std::string_view mantissa = text.substr(0, exponent_at);
@@ -199,7 +198,7 @@ std::optional<vm::Value> to_value(Decimal number, const Unit& unit) {
 
 namespace {
 
-// Values are coarser than thousandths of F: of those that mean the same value, the one with the fewest decimals.
+// Values are coarser than thousandths of F. Of the numbers that mean the same value, returns the one with the fewest decimals.
 std::int64_t shortest(std::int64_t thousandths, std::int64_t value, const Unit& unit) {
   constexpr unsigned kDecimals = 3;
   for (unsigned decimals = 0; decimals < kDecimals; ++decimals) {
@@ -237,7 +236,7 @@ std::string written(Decimal number) {
 
 namespace {
 
-// Without a fraction where there are digits enough without it; never farther from 0 than `value`.
+// Rounds to a whole number if that has enough digits; never farther from 0 than `value`.
 std::string toward_zero(vm::Value value, const Unit& unit) {
   constexpr std::int64_t enough = 1000;
   const Wide scaled = (Wide{value} * unit.divisor - unit.offset) * vm::kScale / unit.factor;
@@ -275,7 +274,7 @@ std::string too_many_digits(std::string_view text) {
   }
   if (!exponent || digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos)
     return {};
-  // As it would be written without an exponent.
+  // The number of digits, as if it were written without an exponent.
   const auto behind = static_cast<std::int64_t>(digits.size() - point) - *exponent;
   const std::size_t zeros = std::min(digits.find_first_not_of('0'), digits.size());
   const std::int64_t all =
@@ -308,7 +307,7 @@ struct Fraction {
   Wide numerator, denominator;
 };
 
-// Thousandths of the canonical unit for one count, as small as they can be written.
+// Thousandths of the canonical unit for one count, in lowest terms.
 Fraction scale_of(Decimal number, const Unit& unit) {
   Fraction result{Wide{number.mantissa} * unit.factor,
                   power_of_ten(number.decimals) * unit.divisor};

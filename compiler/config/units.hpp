@@ -1,4 +1,4 @@
-// Units, and exact conversion of written numbers to the robot's values (vm/value.hpp).
+// Units, and exact conversion of written numbers to values on the robot (vm/value.hpp).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,7 @@ struct Unit {
 };
 
 [[nodiscard]] std::span<const Unit> units();
-// Any case is accepted, and a unit's other names. nullptr when there is no such unit. "" is the
-// plain number.
+// Accepts any case and a unit's other names. nullptr if there is no such unit. "" is the plain number.
 [[nodiscard]] const Unit* find_unit(std::string_view spelling);
 [[nodiscard]] const Unit& canonical_unit(vm::Dimension dimension);
 [[nodiscard]] std::string_view dimension_phrase(vm::Dimension dimension);  // "a distance"
@@ -31,32 +30,32 @@ struct Decimal {
   unsigned decimals = 0;
 };
 
-// "12", "-0.5", "1e3". Nothing when it is not a number, or has more than 9 decimals or more than
-// 16 digits: more than any value on the robot can hold.
+// "12", "-0.5", "1e3". nullopt if it is not a number, or has more than 9 decimals or more than 16 digits: more than any value on
+// the robot can hold.
 [[nodiscard]] std::optional<Decimal> parse_decimal(std::string_view text);
 
-// Rounded half away from zero. Nothing when out of range (±2,147,483.647 canonical units).
+// Rounded half away from zero. nullopt if out of range (±2,147,483.647 canonical units).
 [[nodiscard]] std::optional<vm::Value> to_value(Decimal number, const Unit& unit);
 
-// Is it written finer than a value on the robot? Only where it could be written so that it is not: never in rad or F.
+// True if it is written with more precision than the robot keeps and could have been exact: never in rad or F.
 [[nodiscard]] bool is_rounded(Decimal number, const Unit& unit);
 
-// The value in `unit`, with as few decimals as say it to a thousandth, or say it at all (F): "2.5cm", "-3F".
+// The value in `unit`, with as few decimals as express it to a thousandth, or at all (F): "2.5cm", "-3F".
 [[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
 
-// The decimal number as it would be written: "-0.5".
+// The decimal number as text: "-0.5".
 [[nodiscard]] std::string written(Decimal number);
 
-// What a robot can hold, in `unit`: "-2147483mm" and "2147483mm", nearer to 0 by less than the last digit shown.
+// The limits of a value on the robot, in `unit`: "-2147483mm" and "2147483mm", closer to 0 by less than the last digit shown.
 [[nodiscard]] std::string smallest(const Unit& unit);
 [[nodiscard]] std::string largest(const Unit& unit);
-// Why the robot has no room for a number, as it was written, for messages.
+// For messages: why a number, as it was written, does not fit on the robot.
 [[nodiscard]] std::string no_room_for(std::string_view number, const Unit& unit);
-// Why parse_decimal() gives nothing for what looks like a number, for messages; empty when that is not for its length.
+// For messages: why parse_decimal() rejects what looks like a number; empty if its length is not the reason.
 [[nodiscard]] std::string too_many_digits(std::string_view text);
 
-// A place for a value in a text that is written out: "{cm}" for a number of centimetres, "{}" for a plain
-// one. The board sends the text and the values; whoever shows them puts them together.
+// A place for a value in a text that is output: "{cm}" for a number of centimetres, "{}" for a plain one. The board sends the
+// text and the values separately; the host combines them.
 struct ValuePlace {
   std::size_t begin = 0, size = 0;  // in the text
   const Unit* unit = nullptr;       // never null
@@ -64,14 +63,14 @@ struct ValuePlace {
 [[nodiscard]] std::optional<ValuePlace> find_place(std::string_view text);
 [[nodiscard]] std::string place_for(const Unit& unit);
 
-// The smallest fraction numerator / denominator = thousandths of the canonical unit for one count
-// of a sensor. Offsets of units (F) do not apply: it is a difference.
+// The fraction numerator / denominator, in lowest terms, = thousandths of the canonical unit for one count of a sensor. Offsets
+// of units (F) do not apply, because it is a difference.
 struct Scale {
   std::int32_t numerator = vm::kScale;
   std::uint16_t denominator = 1;
 };
 [[nodiscard]] std::optional<Scale> to_scale(Decimal number, const Unit& unit);
-// Why it gives nothing, for messages.
+// For messages: why to_scale() returns nullopt.
 [[nodiscard]] std::string why_no_scale(Decimal number, const Unit& unit);
 
 }  // namespace robosync::compiler

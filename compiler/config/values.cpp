@@ -14,7 +14,7 @@
 namespace robosync::compiler {
 namespace {
 
-struct Written {  // "-2.5cm" taken apart
+struct Written {  // "-2.5cm" split into its parts
   std::string_view number, unit;
 };
 
@@ -38,7 +38,7 @@ bool is_number_or_text(const json::Value& value, std::string_view what, Diagnost
   return false;
 }
 
-// The number and its unit; `unit` when none is written.
+// The number and its unit: `unit` if none is written.
 struct Measured {
   Decimal number;
   const Unit* unit = nullptr;
@@ -108,7 +108,7 @@ std::optional<std::int64_t> parse_whole(std::string_view text) {
   return number;
 }
 
-// A limit in the base that the value was written in.
+// A limit, in the base of the value.
 std::string written_like(std::int64_t number, bool hex) {
   if (!hex || number < 0) return std::to_string(number);
   std::array<char, 16> digits{};

@@ -1,5 +1,5 @@
-// Typed values of robot.json. Each reader reports what is wrong (with the place) and then gives
-// nothing. Numbers may be JSON numbers or strings, with a unit where one makes sense.
+// Reads typed values of robot.json. Each function reports what is wrong, with its place, and then returns nullopt. Numbers may be
+// JSON numbers or strings, with a unit where that makes sense.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ namespace robosync::compiler {
 [[nodiscard]] std::optional<vm::Value> read_quantity(const json::Value& value, const Unit& unit,
                                                      Diagnostics& diagnostics);
 
-// As read_quantity(), for a difference: 9F is 5C, for units' zeros do not count.
+// As read_quantity(), but for a difference: 9F is 5C, because the offsets of units do not count.
 [[nodiscard]] std::optional<vm::Value> read_difference(const json::Value& value, const Unit& unit,
                                                        Diagnostics& diagnostics);
 
@@ -50,7 +50,7 @@ struct Range {
 // The name of a unit, "cm".
 [[nodiscard]] const Unit* read_unit(const json::Value& value, Diagnostics& diagnostics);
 
-// For E0303: the nearest unit, or the list of all.
+// For E0303: suggests the nearest unit, or lists them all.
 void suggest_unit(Diagnostic& diagnostic, std::string_view written);
 
 }  // namespace robosync::compiler

@@ -24,7 +24,7 @@ constexpr std::array<WiringType, 7> kTypes = {{
     {"PWM", false, true, false, false, true},
     {"ADC", true, false, false, false, true},
     {"UART", true, true, true, false, false},
-    {"VIRTUAL", true, true, true, true, true},  // keys of the real thing may stay
+    {"VIRTUAL", true, true, true, true, true},  // keys of the real wiring may stay
 }};
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel::count_)> kLevels =
@@ -33,7 +33,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::ActiveLevel:
 constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::count_)> kReleases = {
     "hold", "rest", "coast"};
 
-// Two pins that the board has.
+// Suggests two pins that the board has.
 std::string help_for_echo(const Board& board) {
   const std::string says = "an output and an input, by their names on the part";
   const auto output = std::ranges::find(board.outputs, true, &Board::Pins::power);
@@ -43,7 +43,7 @@ std::string help_for_echo(const Board& board) {
          ", \"echo\": " + std::to_string(board.inputs.front().first) + "`: " + says;
 }
 
-// By the names that their parts of this device have.
+// The boards with a part of this device, and the names of the parts.
 std::string boards_with(std::string_view device) {
   std::vector<std::string> boards;
   for (std::size_t i = 0; i < board_names().size(); ++i)
@@ -53,7 +53,7 @@ std::string boards_with(std::string_view device) {
   return list_names(boards, "and");
 }
 
-// Those that `have` is true of.
+// The boards for which `have` is true.
 template <class Have>
 std::string boards_that(Have have) {
   std::vector<std::string> boards;
@@ -131,7 +131,7 @@ std::uint16_t WiringReader::read_pin(const json::Value& value, std::uint16_t las
   return number;
 }
 
-// 3; or, of what has two: [3, 4], of which the image has a byte for the second one.
+// 3; or, for two pins: [3, 4]. The image has one byte for the second one.
 void WiringReader::read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring) {
   const auto report = [&](const json::Value& wrong) {
     diagnostics_.report(Code::E0205, what + (two ? " has two pins" : " has one pin"))
@@ -160,14 +160,14 @@ void WiringReader::take_pin(std::uint16_t pin, Span span) {
       .label(first->second, "first used here", false);
 }
 
-// A contact to GND on a pin that is pulled up is what most people wire.
+// The default is a contact to GND on a pin with a pull-up, the most common wiring.
 std::uint8_t WiringReader::read_active(const Fields& fields) {
   const auto* active = fields.find("active");
   if (active == nullptr) return static_cast<std::uint8_t>(vm::ActiveLevel::low);
   return static_cast<std::uint8_t>(read_choice(*active, kLevels, diagnostics_).value_or(0));
 }
 
-// Those that are there close to ground, against a pull-up.
+// Parts of a board with a contact close to ground, against a pull-up.
 Wiring WiringReader::read_part(const Fields& fields, const Board::Part& part) {
   for (const char* key : {"bus", "address", "pin", "active"})
     if (const auto* value = fields.find(key))
@@ -218,7 +218,7 @@ void WiringReader::refuse_pins(const Fields& fields) {
               "the pin of the board at the chip's OE");
 }
 
-// Without the enable input nothing but the bus could stop them.
+// Requires the enable input: without it, only the bus could stop the servos.
 ChipWiring WiringReader::read_chip(Fields& fields) {
   ChipWiring wiring;
   refuse_pins(fields);
@@ -260,7 +260,7 @@ void WiringReader::take_channel(const ServoChip& chip, std::uint16_t channel, Sp
       .label(first->second, "first used here", false);
 }
 
-// Its place and its enable pin are its own: two chips at one pin could not be stopped one without the other.
+// Each chip needs its own address and its own enable pin: two chips on one pin could not be stopped separately.
 void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
                              const json::Value& enable) {
   const auto [entry, added] = on_buses_.emplace(std::pair(chip.bus, chip.address),
@@ -281,7 +281,7 @@ void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
         .label(known.enable, "said here", false);
     return;
   }
-  // The first one was wrong, which has been reported: it says nothing of this one.
+  // The enable pin in the first entry was wrong, which has been reported. It says nothing about this one.
   known.chip = chip;
   known.enable = enable.span;
   take_pin(chip.enable, enable.span);
@@ -296,7 +296,7 @@ void WiringReader::report_taken(const OnBus& known, const Wiring& place, Span sp
       .label(known.span, "first used here", false);
 }
 
-// All sensors were read before.
+// All sensors have been read before, so their addresses are known.
 Wiring WiringReader::read_display(Fields& fields, const WiringType& type) {
   report_foreign(fields, type);
   Wiring wiring;
@@ -345,7 +345,7 @@ void WiringReader::check_safe(const ServoChip& chip, vm::Release safe, Span span
   }
 }
 
-// Of these pins the image has a byte for the first one.
+// The image has one byte for the trigger pin.
 Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
   for (const char* key : {"pin", "bus", "address", "active"})
     if (const auto* wrong = fields.find(key))
@@ -364,7 +364,7 @@ Wiring WiringReader::read_echo(Fields& fields, const std::string& what) {
 
 namespace {
 
-// Which chip a sensor is; nullptr: any, of whose registers robot.json says one.
+// The chip of a sensor; nullptr for the generic device of which robot.json names a register.
 const Device* chip_of(const Fields& fields, const Board::Part* part) {
   const auto* said = fields.find("device");
   if (part == nullptr && said == nullptr) return nullptr;
@@ -396,12 +396,12 @@ Wiring WiringReader::read_actuator(Fields& fields, const WiringType& type, const
   return wiring;
 }
 
-// Several sensors may be made of one chip's registers; but of one that measures when it is told each would take the result that
-// the other one has asked for, and two different chips would both answer.
+// Several sensors may read registers of the same chip. But a chip that measures on demand must have one sensor only: two would
+// take each other's results. Two different chips would both answer.
 void WiringReader::take_address(const Fields& fields, const Wiring& place, const Board::Part* part,
                                 bool alone) {
   const auto* said = fields.find(part != nullptr ? "device" : "address");
-  Diagnostics reported;  // before
+  Diagnostics reported;  // they were reported before
   if (said == nullptr || (part == nullptr && read_whole(*said, vm::kFirstAddress, vm::kLastAddress,
                                                         reported) != place.place))
     return;
@@ -449,7 +449,7 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
                                    : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
 }
 
-// Each line leads to one player.
+// Each serial line connects one player.
 void WiringReader::check_line(const Fields& fields, const Wiring& wiring) {
   const auto* bus = fields.find("bus");
   const Span span = (bus != nullptr ? bus : fields.find("device"))->span;
@@ -505,7 +505,7 @@ void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) 
       .helps("boards that have one: " + boards_with_panels());
 }
 
-// A pin that is held to the pulses of servos drives no motor (policy::can_drive()).
+// A pin that is limited to servo pulses cannot drive a motor (policy::can_drive()).
 void WiringReader::check_output_pin(const json::Value& value, std::uint16_t pin, bool power) {
   if (board_.has_output(pin) && (!power || board_.gives_power(pin))) return;
   std::vector<Board::Pins> those;
@@ -548,7 +548,7 @@ void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
 void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
                                  const std::string& is_no, const std::string& those_are,
                                  std::span<const Board::Pins> those) {
-  // A value that is no pin has been reported, and of a board that nobody knows nothing can be said.
+  // A value that is not a pin has been reported. Nothing can be said about an unknown board.
   Diagnostics said;
   if (board_.named == Board::Named::wrongly || read_whole(value, 0, UINT16_MAX, said) != pin)
     return;

@@ -19,62 +19,62 @@ struct Device;
 struct WiringType {
   std::string_view name;
   bool for_sensors, for_actuators;
-  bool bus, address, pin;  // which of these keys it has
+  bool bus, address, pin;  // the keys that it has
 };
 [[nodiscard]] std::span<const WiringType> wiring_types();
 
-// The "type" of a sensor or actuator. Reports and gives nothing when it is missing or wrong.
+// Reads the "type" of a sensor or actuator. Reports a missing or wrong one and returns null.
 [[nodiscard]] const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics);
 
 struct Wiring {
-  // Of a sensor of type GPIO: vm::ActiveLevel, or its trigger pin; of an actuator with two pins: the second one.
+  // Of a sensor of type GPIO: vm::ActiveLevel, or its trigger pin. Of an actuator with two pins: the second one.
   std::uint8_t bus = 0;
   std::uint16_t place = 0;  // I2C address or pin
 };
 
 // A servo on a chip.
 struct ChipWiring {
-  std::optional<ServoChip> chip;  // nothing: what is said of it is wrong, or not all is said
+  std::optional<ServoChip> chip;  // nullopt: its keys are wrong or incomplete
   std::uint16_t channel = 0;
 };
 
-// Reads buses, addresses and pins of one robot, which has `board`; a pin may be used once.
+// Reads the buses, addresses and pins of one robot on `board`; each pin may be used once.
 class WiringReader {
 public:
   WiringReader(Board board, Diagnostics& diagnostics)
       : board_(std::move(board)), diagnostics_(diagnostics) {}
-  // `part`: which of the board's own parts it is, which brings its wiring; or null.
+  // `part`: the part of the board, which has its own wiring; or null.
   [[nodiscard]] Wiring read_sensor(Fields& fields, const WiringType& type, const Board::Part* part,
                                    vm::DriverId driver);
   [[nodiscard]] Wiring read_actuator(Fields& fields, const WiringType& type,
                                      const Board::Part* part, vm::DriverId driver);
   [[nodiscard]] ChipWiring read_chip(Fields& fields);
-  // Of a display: its bus, which the board must have, and its address, which is its own.
+  // A display's bus, which the board must have, and its address, which nothing else may use.
   [[nodiscard]] Wiring read_display(Fields& fields, const WiringType& type);
-  // All servos of a chip have the same safe state, which is said at `span`, or else of the entry.
+  // All servos of a chip must have the same safe state. `span`: where `safe` is set, or else the entry.
   void check_safe(const ServoChip& chip, vm::Release safe, Span span);
-  // For those whose driver uses them: the board must have them.
+  // For drivers that use them: checks that the board has them.
   void check_bus(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_echo(const Fields& fields, const Wiring& wiring);
   void check_analog(const Fields& fields, const Wiring& wiring);
-  // Of a sound player.
+  // For a sound player.
   void check_line(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
-  // Of a panel of lights, of which a robot has one.
+  // For a panel of lights. A robot has at most one.
   void check_panel(const Fields& fields, const Wiring& wiring);
-  // Lights and speakers are parts of a board, or nowhere.
+  // For lights and speakers, which can only be parts of a board.
   void check_part(const Fields& fields, const Board::Part* part);
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:
   struct OnBus {
     Span span;
-    bool alone = false;              // no second sensor may be there
-    const Device* device = nullptr;  // its chip: no other one may be there
+    bool alone = false;              // no second sensor may use the address
+    const Device* device = nullptr;  // its chip: no other one may use the address
     std::optional<ServoChip> chip{};
     Span enable{};
-    std::map<std::uint16_t, Span> channels{};  // that servos have
+    std::map<std::uint16_t, Span> channels{};  // used by servos
     std::optional<vm::Release> safe{};
     Span safe_span{};
   };
@@ -109,14 +109,14 @@ private:
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address
 };
 
-// Which of `names` a string is, any case; reports E0205 with the choice when none.
+// The index of a string in `names`, ignoring case; otherwise reports E0205 with the choices.
 [[nodiscard]] std::optional<std::size_t> read_choice(const json::Value& value,
                                                      std::span<const std::string_view> names,
                                                      Diagnostics& diagnostics);
 [[nodiscard]] std::optional<vm::Release> read_release(const json::Value& value,
                                                       Diagnostics& diagnostics);
 
-// The unit in which an actuator understands a parameter, of `verb` if it has one of its own.
+// The unit of an actuator's parameter; that of `verb` if it has its own.
 [[nodiscard]] const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param,
                                      const VerbConfig* verb = nullptr);
 

@@ -1,4 +1,4 @@
-// May assume any tree of the parser: DEFINEs that run themselves are walked once.
+// Accepts any tree of the parser. A DEFINE that runs itself is walked once.
 #include "compiler/explain/actuators.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace robosync::compiler::explain {
 namespace {
 
-using Given = std::map<std::string, std::string>;  // names, by the parameter that they are given to
+using Given = std::map<std::string, std::string>;  // the names given as arguments, by parameter
 
 class Walk {
 public:
@@ -48,11 +48,11 @@ private:
     }
   }
   template <typename Other>
-  void visit(const Other& node) {  // commands nothing by itself
+  void visit(const Other& node) {  // commands nothing itself
     ast::for_each_block_of(node, [this](const ast::Block& inner) { block(inner); });
   }
 
-  // The name that a parameter is given, in the DEFINE that is walked.
+  // The argument for a parameter of the DEFINE that is being walked.
   std::string meant(std::string_view name) const {
     const auto found = given_.find(folded(name));
     return found == given_.end() ? std::string(name) : found->second;
@@ -98,7 +98,7 @@ private:
     return false;
   }
 
-  // All of its columns: PERFORM claims them at once.
+  // Adds all of its columns, because PERFORM claims them all together.
   bool add_motion(std::string_view name) {
     const ast::Motion* const motion = motion_called(name);
     if (motion == nullptr) return false;
@@ -116,7 +116,7 @@ private:
     return nullptr;
   }
 
-  // SAY "…" names none: it is the one that knows the verb.
+  // SAY "…" names no actuator: the one that knows the verb is meant.
   void add_by_verb(std::string_view verb) {
     if (robot_ == nullptr) return;
     for (const ActuatorConfig& actuator : robot_->actuators) {

@@ -1,5 +1,5 @@
-// Who uses which actuators, found from the tree alone and, where there is one, the robot: what
-// interrupts what.
+// Finds which rules use which actuators, and which ones interrupt each other. Works on the tree alone, and on the robot if there
+// is one.
 #pragma once
 
 #include <set>
@@ -12,21 +12,21 @@
 
 namespace robosync::compiler::explain {
 
-// Names of actuators; of a group, its members. Without a robot, the names in the program.
+// Names of actuators; for a group, its members. Without a robot, the names in the program.
 using ActuatorNames = std::set<std::string>;
 
-// `trees` have the MOTIONs that PERFORM may mean. `robot` may be null.
+// `trees` contain the MOTIONs that PERFORM can name. `robot` may be null.
 [[nodiscard]] ActuatorNames actuators_of(const ast::Block& block, Trees trees,
                                          const Defines& defines, const Robot* robot);
 
 // A behaviour, or a rule outside one.
 struct Party {
-  std::string name;  // as it is said: "greet", "the rule at line 3"
+  std::string name;  // as shown: "greet", "the rule at line 3"
   int priority = 0;  // below 1: a rule outside a BEHAVIOR without PRIORITY
   ActuatorNames actuators;
 };
 
-// "It interrupts rest (priority 10) …", a line each; empty when it meets nobody.
+// "It interrupts rest (priority 10) …", one line each; empty if it shares no actuator with another party.
 [[nodiscard]] std::vector<std::string> meetings(const Party& party,
                                                 const std::vector<Party>& parties);
 

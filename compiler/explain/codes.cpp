@@ -1,4 +1,4 @@
-// The texts of codes.def, put together for a reader.
+// Formats the texts of codes.def for display.
 #include "compiler/explain/codes.hpp"
 
 #include <algorithm>

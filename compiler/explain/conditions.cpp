@@ -1,5 +1,4 @@
-// May assume any tree of the parser, also one with mistakes. Recursion is bounded by the parser's
-// limit on the depth of expressions.
+// Accepts any tree of the parser, even one with mistakes. Recursion is bounded by the parser's limit on the depth of expressions.
 #include "compiler/explain/conditions.hpp"
 
 #include <optional>
@@ -21,7 +20,7 @@ std::string of(const Expr& expr) {
   return number(expr);
 }
 
-// By its short name; as it is written when there is no such unit.
+// The unit's short name; as written if there is no such unit.
 std::string unit_of(const ast::Quantity& quantity) {
   const Unit* const unit = find_unit(quantity.unit);
   return std::string(unit != nullptr ? unit->spelling : quantity.unit);
@@ -43,7 +42,7 @@ std::string_view sign(ast::ArithmeticOp op) {
   return "?";
 }
 
-// Brackets around sums that stand inside something else: their order must not be guessed.
+// Puts brackets around a sum inside another operation, so that readers need not guess the order.
 std::string part(const Expr& expr) {
   const bool sum = std::holds_alternative<ast::Arithmetic>(expr.node);
   return sum ? fmt::format("({})", number(expr)) : number(expr);
@@ -66,9 +65,9 @@ std::string operand(const ast::Operand& node) {
   return node.channel ? fmt::format("{} {}", name, node.channel->text) : name;
 }
 
-// ---- conditions that say one thing of one subject
+// ---- conditions with one subject and one state
 
-// Subject and state, to be joined by "is", "becomes" or "has been".
+// A subject and a state, to be joined by "is", "becomes" or "has been".
 struct Claim {
   std::string subject, state;
 };
@@ -129,7 +128,7 @@ std::string say(const Claim& claim, Tense tense, bool negated) {
   return {};
 }
 
-// A condition in one clause; nothing when it has several parts.
+// A condition as a single clause; nullopt if it has several parts.
 std::optional<std::string> simple(const Expr& expr, Tense tense) {
   if (const auto one = claim(expr)) return say(*one, tense, false);
   if (const auto* node = std::get_if<ast::Not>(&expr.node)) {
@@ -146,7 +145,7 @@ std::string changes(const ast::Changes& node) {
   return text;
 }
 
-// What happens at one moment: "touch LEVEL becomes more than 0".
+// An event at one moment: "touch LEVEL becomes more than 0".
 std::string moment(const Expr& expr) {
   if (const auto one = simple(expr, Tense::becomes)) return *one;
   if (const auto* node = std::get_if<ast::Becomes>(&expr.node)) {
@@ -194,7 +193,7 @@ std::optional<std::string> time_word(const Expr& expr) {
   return std::nullopt;
 }
 
-// A part of AND or OR; brackets where the other of the two stands inside.
+// A part of AND or OR, in brackets if it is the other of the two.
 std::string part_of_logic(const Expr& expr, ast::LogicOp op) {
   const auto* const inner = std::get_if<ast::Logic>(&expr.node);
   const bool brackets = (inner != nullptr && inner->op != op) || time_word(expr).has_value();
@@ -241,7 +240,7 @@ std::string is_true(const Expr& expr) {
     return fmt::format("{} has just become {}", of(*node->value), node->label.text);
   }
   if (const auto* node = std::get_if<ast::Changes>(&expr.node)) return changes(*node);
-  return number(expr) + " is true";  // a mistake, which `rsc check` reports
+  return number(expr) + " is true";  // a mistake that `rsc check` reports
 }
 
 std::string as_soon_as(const Expr& condition) {

@@ -1,4 +1,4 @@
-// May assume any tree of the parser. Promises the program's own order inside each part.
+// Accepts any tree of the parser. Each part keeps the program's own order.
 #include "compiler/explain/program_text.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kIndent = 2;
 
-// People who are told how rules are evaluated make fewer mistakes.
+// Readers who know how rules are evaluated make fewer mistakes.
 constexpr std::string_view kHowItWorks =
     "How the robot works through its rules:\n"
     "  - \"As soon as\" happens once, at the moment something becomes true, or at start if it is\n"

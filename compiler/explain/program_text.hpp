@@ -1,5 +1,5 @@
-// A whole program in plain English: what it remembers, its checks, safety rules, behaviours and
-// DEFINEs, and what interrupts what. So are the modules that it uses, but for what it does not use of them.
+// Puts a whole program into plain English: its variables, checks, safety rules, behaviours and DEFINEs, and what interrupts what.
+// The modules that it uses are included, without the DEFINEs that it does not use.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace robosync::compiler::explain {
 
-// `trees`, of which there is one at least, may have mistakes; what could not be read is not told. `robot` may be null: then
-// groups of actuators are not known, and conflicts are found by name only.
+// `trees`: at least one; they may have mistakes, and unreadable parts are left out. `robot` may be null: then groups of actuators
+// are unknown, and conflicts are found by name only.
 [[nodiscard]] std::string program_text(Trees trees, const SourceMap& sources, const Robot* robot);
 
 }  // namespace robosync::compiler::explain

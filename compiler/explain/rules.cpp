@@ -1,4 +1,4 @@
-// May assume any tree of the parser.
+// Accepts any tree of the parser.
 #include "compiler/explain/rules.hpp"
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ public:
           "If it becomes true again while this is still going on, it starts again from "
           "the top.");
     }
-    if (modifiers.waiting && !has_else_) {  // a side waits anyway, as long as it takes
+    if (modifiers.waiting && !has_else_) {  // a rule with ELSE always waits, for any time
       say(kRuleIndent,
           fmt::format("If something more important is using what it needs, it waits for "
                       "that, but at most {}.",
@@ -116,7 +116,7 @@ private:
   std::string_view place_;
   std::size_t indent_;
   bool has_else_ = false;
-  bool one_comparison_ = false;  // the condition is nothing else, but for its FOR
+  bool one_comparison_ = false;  // the condition consists of this, apart from its FOR
   bool has_not_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Rules in plain English: when they start, what they do, what their modifiers mean.
+// Puts rules into plain English: when they start, what they do, what their modifiers mean.
 #pragma once
 
 #include <string>

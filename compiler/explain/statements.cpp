@@ -1,4 +1,4 @@
-// May assume any tree of the parser. Recursion is bounded by its limit on nested blocks.
+// Accepts any tree of the parser. Recursion is bounded by the parser's limit on nested blocks.
 #include "compiler/explain/statements.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ bool is_capital(std::string_view word) {
   return std::ranges::none_of(word, [](unsigned char c) { return std::islower(c) != 0; });
 }
 
-// SLOWLY reads as slowly; a name that its owner wrote with small letters stays as it is.
+// SLOWLY is shown as slowly; a name that the author wrote in small letters stays as it is.
 std::string softly(std::string_view word) {
   return is_capital(word) ? folded(word) : std::string(word);
 }
@@ -54,7 +54,7 @@ std::string value_of(const ast::Argument& argument) {
   return count == "1" ? "once" : count + " times";
 }
 
-// The IF that is all of another one's ELSE; null when there is none.
+// The IF that is the only statement in another IF's ELSE; null if there is none.
 const ast::If* other_if(const ast::If& node) {
   return node.else_block.size() == 1 ? std::get_if<ast::If>(&node.else_block.front().node)
                                      : nullptr;

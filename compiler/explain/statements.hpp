@@ -1,4 +1,4 @@
-// What a response does, in plain English: one line a statement, blocks indented.
+// Puts a response into plain English: one line for each statement, blocks indented.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace robosync::compiler::explain {
 // A program and the modules that it uses; the program is the first.
 using Trees = std::span<const ast::Tree* const>;
 
-// The DEFINEs of a program by name, in the spelling that `folded` makes the same for all cases. The first of a name counts.
+// The DEFINEs of a program by their folded names; of two with one name, the first.
 using Defines = std::map<std::string, const ast::Define*>;
 [[nodiscard]] Defines defines_of(Trees trees);
 [[nodiscard]] std::string folded(std::string_view name);

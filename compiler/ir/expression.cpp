@@ -11,7 +11,7 @@ bool divides(const Expression& expression) {
   return expression.operation == Operation::divide || expression.operation == Operation::modulo;
 }
 
-// An operator on two known numbers that gives a truth.
+// A comparison of two known numbers.
 vm::Value relation(Operation operation, vm::Value left, vm::Value right) {
   if (left == vm::kUnknown || right == vm::kUnknown) return vm::kUnknown;
   switch (operation) {
@@ -100,7 +100,7 @@ vm::Value compute(Operation operation, vm::Value left, vm::Value right) {
       return vm::greater(left, right);
     case Operation::round:
       return vm::round_to(left, right);
-    case Operation::logical_and:  // value.hpp: the three-valued ones are bitwise
+    case Operation::logical_and:  // value.hpp: AND and OR of truth values are bitwise
       return left & right;
     case Operation::logical_or:
       return left | right;

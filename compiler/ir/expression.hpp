@@ -1,5 +1,4 @@
-// A number or a truth value as the compiler holds it: names resolved, units converted. Values are
-// thousandths of the canonical unit.
+// Numbers and truth values in the compiler: names are resolved and units converted. Values are thousandths of the canonical unit.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +21,7 @@ struct ChannelRef {
 enum class Operation : std::uint8_t {
   constant,
   input,     // a channel
-  variable,  // Expression::index: its place in ir::Program::variables
+  variable,  // Expression::index: its index in ir::Program::variables
   local,     // Expression::index: its number in the response (ir::Local)
   negate,
   add,
@@ -37,8 +36,8 @@ enum class Operation : std::uint8_t {
   random,  // from the first operand to the second
   // A TIMER is a variable: the time of its last RESTART.
   now,      // that time, in a RESTART
-  elapsed,  // the time since the first operand, a TIMER
-  lasted,   // a truth: since the first operand, a TIMER, the second has gone by
+  elapsed,  // the time since the first operand, a TIMER, was restarted
+  lasted,   // a truth value: the second operand has passed since the first, a TIMER, was restarted
   less,
   less_equal,
   greater,
@@ -48,8 +47,8 @@ enum class Operation : std::uint8_t {
   logical_not,
   logical_and,
   logical_or,
-  // Time words. `constant` is the duration, of `changed` the least difference. They remember the
-  // past: each stands for one timer, which is evaluated in every step.
+  // Time words. `constant` is the duration; for `changed`, the least difference. They remember the past: each has its own timer,
+  // which is evaluated in every step.
   held,      // operand FOR
   counted,   // operand `index` TIMES WITHIN
   sequence,  // first operand THEN second operand WITHIN
@@ -58,36 +57,36 @@ enum class Operation : std::uint8_t {
   changed    // the number CHANGES [BY]
 };
 
-// A number or a truth value. Operands: none, one or two, by its operation.
+// A number or a truth value. It has none, one or two operands, depending on its operation.
 struct Expression {
   Operation operation = Operation::constant;
   vm::Value constant = 0;
   std::size_t index = 0;
   ChannelRef channel;
   std::vector<Expression> operands;
-  Fact fact{};  // what the optimiser has proved of it, in this place
-  // The same computation, whatever is known of it.
+  Fact fact{};  // what the optimiser has proved about it at this place
+  // Compares the computations; facts do not count.
   bool operator==(const Expression& other) const;
 };
 
-// Is it a time word itself, whatever its operands are?
+// True if it is itself a time word; operands do not count.
 [[nodiscard]] bool is_time_word(Operation operation);
 [[nodiscard]] bool is_comparison(Operation operation);
-// The same comparison with its sides exchanged.
+// The same comparison with its operands exchanged.
 [[nodiscard]] Operation mirrored(Operation comparison);
 
-// Of two values, as the robot does it, so that neither folding a constant nor judging a TEST can
-// differ from what a program does. Of arithmetic, comparisons, AND and OR; of others kUnknown.
+// Computes with the robot's arithmetic, so that constant folding and the checks of a TEST agree with the program. Supports
+// arithmetic, comparisons, AND and OR; other operations give kUnknown.
 [[nodiscard]] vm::Value compute(Operation operation, vm::Value left, vm::Value right);
 
-// Does it, or a part of it, change with time alone?
+// True if it, or a part of it, changes with time alone.
 [[nodiscard]] bool reads_time(const Expression& expression);
 
-// Does it, or a part of it, remember the past?
+// True if it, or a part of it, remembers the past.
 [[nodiscard]] bool has_time_word(const Expression& expression);
 
-// Can it be left out, or evaluated once instead of twice? It draws no random number, remembers
-// nothing, and divides by nothing that may be 0, of which the robot tells.
+// True if it may be left out, or evaluated once instead of twice: it draws no random number, remembers nothing, and divides by
+// nothing that may be 0, which the robot would report.
 [[nodiscard]] bool is_pure(const Expression& expression);
 
 }  // namespace robosync::compiler

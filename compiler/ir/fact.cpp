@@ -24,7 +24,7 @@ std::int64_t size_of(const Fact& fact) {
   return std::max(std::abs(std::int64_t{fact.low}), std::abs(std::int64_t{fact.high}));
 }
 
-// Of an operation that rises or falls in each operand: its extremes are those at the corners.
+// For an operation that is monotonous in each operand: its extremes are at the corners of the ranges.
 template <typename Operation>
 Fact at_corners(const Fact& b, const Fact& c, Operation operation) {
   const std::array<Value, 4> corners = {operation(b.low, c.low), operation(b.low, c.high),
@@ -64,7 +64,7 @@ bool sum_fits(const Fact& b, const Fact& c) {
   return in_range(std::int64_t{b.low} + c.low) && in_range(std::int64_t{b.high} + c.high);
 }
 
-// What saturates is no whole number any more.
+// A sum that saturates is not whole.
 Fact add(const Fact& b, const Fact& c) {
   return {b.known && c.known, b.whole && c.whole && sum_fits(b, c),
           cut_off(std::int64_t{b.low} + c.low), cut_off(std::int64_t{b.high} + c.high)};
@@ -90,7 +90,7 @@ Fact divide(const Fact& b, const Fact& c) {
   return {b.known && c.known, false};
 }
 
-// A remainder has the sign of the divisor and is smaller, by one at least if both are whole.
+// A remainder has the sign of the divisor and is smaller in magnitude, by at least one if both are whole.
 Fact modulo(const Fact& b, const Fact& c) {
   const bool known = b.known && c.known;
   const bool whole = b.whole && c.whole;
@@ -116,7 +116,7 @@ Fact maximum(const Fact& b, const Fact& c) {
   return {b.known && c.known, b.whole && c.whole, std::max(b.low, c.low), std::max(b.high, c.high)};
 }
 
-// To a constant step; the end of the range is no multiple of it.
+// For a constant step. The ends of the range are not multiples of it.
 Fact round_to(const Fact& b, const Fact& c) {
   if (c.low != c.high || c.low <= 0) return {b.known && c.known};
   const Value low = vm::round_to(b.low, c.low);
@@ -164,7 +164,7 @@ Fact logical_not(const Fact& b) {
   return {b.known, false, vm::logical_not(b.high), vm::logical_not(b.low)};
 }
 
-// True is the least number, so AND is the greater one of two known truths, and OR the lesser one.
+// True is the least number, so AND is the greater of two known truth values, and OR the lesser.
 Fact logical_and(const Fact& b, const Fact& c) {
   const auto is_false = [](const Fact& one) { return one.known && one.low == vm::kFalse; };
   return {(b.known && c.known) || is_false(b) || is_false(c), false, std::max(b.low, c.low),

@@ -1,9 +1,8 @@
-// What is proved of a value before the program runs.
+// Facts about a value that are proved before the program runs.
 //
-// A fact holds of every value that an expression can have: unless it is unknown, it lies in
-// low … high, and is a multiple of one if `whole`; `known`: it never is unknown. Truth values are
-// numbers, too (vm/value.hpp). The functions below give the fact of a result from those of its
-// operands; they keep exactly to vm/arithmetic.hpp, saturation included.
+// A fact holds for every value that an expression can have: unless the value is unknown, it lies in low … high, and is a multiple
+// of one if `whole`. `known`: it is never unknown. Truth values are numbers, too (vm/value.hpp). The functions below compute the
+// fact of a result from those of its operands. They match vm/arithmetic.hpp exactly, including saturation.
 #pragma once
 
 #include "vm/value.hpp"
@@ -25,7 +24,7 @@ struct Fact {
 
 [[nodiscard]] Fact fact_of(vm::Value constant);
 [[nodiscard]] Fact known_between(vm::Value low, vm::Value high, bool whole);
-// Of a value that has one of both facts.
+// The fact of a value that has one of the two facts.
 [[nodiscard]] Fact either(const Fact& one, const Fact& other);
 
 [[nodiscard]] Fact negate(const Fact& b);
@@ -40,7 +39,7 @@ struct Fact {
 [[nodiscard]] Fact round_to(const Fact& b, const Fact& c);
 [[nodiscard]] Fact random_between(const Fact& b, const Fact& c);
 [[nodiscard]] Fact clamp(const Fact& b, vm::Value min, vm::Value max);
-// The sum of `times` values of this fact, or of fewer.
+// The sum of up to `times` values with this fact.
 [[nodiscard]] Fact sum_of_up_to(vm::Value times, const Fact& b);
 
 [[nodiscard]] Fact is_less(const Fact& b, const Fact& c);
@@ -50,7 +49,7 @@ struct Fact {
 [[nodiscard]] Fact logical_and(const Fact& b, const Fact& c);
 [[nodiscard]] Fact logical_or(const Fact& b, const Fact& c);
 
-// Neither the sum, nor any product, is beyond the numbers: the unchecked opcodes may be used.
+// True if no sum, or no product, overflows: the unchecked opcodes may be used.
 [[nodiscard]] bool sum_fits(const Fact& b, const Fact& c);
 [[nodiscard]] bool product_fits(const Fact& b, const Fact& c);
 

@@ -6,7 +6,7 @@
 
 namespace robosync::compiler::ir {
 
-// A part of a time counts as a time, as it does where the robot works out the number.
+// A fraction counts as one more time, as on the robot.
 std::optional<vm::Value> constant_count(const Repeat& repeat) {
   const bool counts = repeat.kind == RepeatKind::times;
   if (!counts || repeat.control.operation != Operation::constant) return std::nullopt;

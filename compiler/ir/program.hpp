@@ -1,12 +1,11 @@
-// The program with everything resolved: what sema makes, the optimiser changes and codegen reads.
-// Values are thousandths of the canonical unit; sensors and actuators are places in the Robot's
-// lists, variables are places in Program::variables. DEFINEs are expanded: what they are given is
-// constant, or a local.
+// The resolved program: sema creates it, the optimiser changes it, codegen reads it. Values are thousandths of the canonical
+// unit. Sensors and actuators are indexes in the Robot's lists, variables are indexes in Program::variables. DEFINEs are
+// expanded: their arguments are constants or locals.
 //
-// Each kind of statement says three things of itself, which all passes go by (ir/walk.hpp):
-//   kParts   the expressions and the blocks that it holds, in the program's order
-//   kPauses  whether it gives up the processor, so that the response goes on in a later step
-//   kCells   how many cells of the frame it keeps at most: locals, counters, deadlines
+// Each kind of statement defines three properties, which all passes use (ir/walk.hpp):
+//   kParts   its expressions and blocks, in the program's order
+//   kPauses  whether it pauses, so that the response continues in a later step
+//   kCells   an upper bound on the frame cells it keeps: locals, counters, deadlines
 // Only Set writes variables; only Command and Halt name actuators.
 #pragma once
 
@@ -28,13 +27,13 @@ struct Unit;  // config/units.hpp
 
 namespace robosync::compiler::ir {
 
-// ---- what is remembered
+// ---- variables
 
 struct Variable {
   std::string name;
   vm::VariableKind kind{};
   vm::Dimension dimension{};
-  const Unit* unit = nullptr;       // as it is written; null: it has none
+  const Unit* unit = nullptr;       // as written in the program; null: it has none
   std::vector<std::string> labels;  // of state and band
   vm::Value initial = 0;            // kUnknown for band
   vm::Value min = vm::kValueMin, max = vm::kValueMax;
@@ -50,7 +49,7 @@ struct Check {
   std::uint16_t sample_ms = 0;
 };
 
-// A MOTION that something performs: where each of its actuators is when.
+// A MOTION that the program performs: the positions of its actuators over time.
 struct Track {
   std::size_t actuator = 0;
   std::vector<vm::Key> keys;
@@ -61,7 +60,7 @@ struct Motion {
   std::vector<Track> tracks;
 };
 
-// ---- what responses do
+// ---- statements
 
 struct Argument {
   vm::Param param{};
@@ -70,7 +69,7 @@ struct Argument {
   bool operator==(const Argument&) const = default;
 };
 
-// A word or text of the first actuator it is for, which sets one parameter.
+// A word or text that sets one parameter. It belongs to the command's first actuator.
 struct Word {
   std::string name;
   vm::Param param{};
@@ -85,15 +84,15 @@ struct Verb {
   bool operator==(const Verb&) const = default;
 };
 
-// One or several actuators. STOP in a response is a command with the verb STOP; STOP ALL is one for
-// each actuator. PERFORM is one for all actuators of its MOTION.
+// A command for one or more actuators. STOP in a response is a command with the verb STOP; STOP ALL is one command for each
+// actuator. PERFORM is one command for all actuators of its MOTION.
 struct Command {
-  std::optional<std::size_t> group;    // place in Robot::groups: the target is the group …
+  std::optional<std::size_t> group;    // index in Robot::groups: the target is the group …
   std::vector<std::size_t> actuators;  // … and these are its members; else exactly one
   Verb verb;
   std::optional<Word> word;
   std::vector<Argument> arguments;
-  // PERFORM: the place in Program::motions of what is performed; `actuators` are all that it moves.
+  // For PERFORM: the index in Program::motions. `actuators` are all that the MOTION moves.
   std::optional<std::size_t> motion{};
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
@@ -103,10 +102,10 @@ struct Command {
 struct Statement;
 using Block = std::vector<Statement>;
 
-struct Local {  // a value that is worked out here: what a DEFINE is given
+struct Local {  // a value that is computed here: an argument of a DEFINE
   std::size_t number = 0;
   Expression value;
-  bool has_other_writers = false;  // then what it holds depends on the way there
+  bool has_other_writers = false;  // then its value depends on the path to here
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
   static constexpr std::tuple kParts{&Local::value};
@@ -115,11 +114,11 @@ struct Set {
   std::size_t variable = 0;
   Expression value;
   bool relative = false;  // RAISE, LOWER, SIGNAL: `value` is added
-  // What the optimiser has proved: the variable was written in this run already, so that it can be
-  // computed where it stands; and the result may be outside of the variable's range.
+  // Proved by the optimiser: the variable was already written in this run, so it can be computed in place; and whether the result
+  // may be outside the variable's range.
   bool in_place = false;
   bool may_be_below = true, may_be_above = true;
-  Fact before{};  // what the variable is before
+  Fact before{};  // the fact of the variable before the statement
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
   static constexpr std::tuple kParts{&Set::value};
@@ -137,9 +136,9 @@ struct WaitUntil {
   static constexpr std::size_t kCells = 1;
   static constexpr std::tuple kParts{&WaitUntil::condition, &WaitUntil::within};
 };
-// FOLLOW: the body runs in each step that may change what it reads, beginning with the next, until the
-// time is over; without one, as long as the response runs. What it remembers from one run of the body to
-// the next is a local that stands before it.
+// FOLLOW: the body runs in each step that may change what it reads, starting with the next step, until the time is over; without
+// a time, as long as the response runs. Values that last from one run of the body to the next are locals in front of the
+// statement.
 struct Follow {
   std::optional<Expression> lasts;
   Block body;  // it does not pause
@@ -161,14 +160,14 @@ struct If {
 };
 enum class RepeatKind : std::uint8_t { times, while_, forever };
 struct Repeat;
-// How often it runs, when that is constant: a whole number in thousandths, 0 for never.
+// How often the loop runs, if that is constant: a whole number in thousandths, 0 for never.
 [[nodiscard]] std::optional<vm::Value> constant_count(const Repeat& repeat);
 struct Repeat {
   RepeatKind kind{};
   Expression control;  // times: the number; while_: the condition
   Block body;
-  // Variables that the body certainly writes: the optimiser has them written once before the loop
-  // (to what they are), so that the body computes them in place.
+  // Variables that the body is certain to write. The optimiser has each written with its own value once before the loop, so that
+  // the body can compute it in place.
   std::vector<std::size_t> assigned{}, shifted{};
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 1;
@@ -185,9 +184,9 @@ struct Pick {
   static constexpr std::size_t kCells = 1;
   static constexpr std::tuple kParts{&Pick::options};
 };
-struct Log {  // LOG, and ALERT with `alert`
+struct Log {  // LOG; ALERT if `alert`
   bool alert = false;
-  std::string text;                // with a {} place for each value
+  std::string text;                // with a {} placeholder for each value
   std::vector<Expression> values;  // at most as many as there are vm::Params
   static constexpr bool kPauses = false;
   static constexpr std::size_t kCells = 0;
@@ -209,18 +208,18 @@ struct Statement {
   Span span;
 };
 
-// Does the statement itself give up the processor? Of a block: does a statement in it, anywhere?
+// True if the statement itself pauses; for a block, if any statement in it pauses, at any depth.
 [[nodiscard]] bool is_pause(const Statement& statement);
 [[nodiscard]] bool pauses(const Block& block);
 
-// ---- when they do it
+// ---- rules
 
 struct Rule {
   vm::RuleKind kind = vm::RuleKind::when;  // when … start; safety
   Expression condition;                    // every: the period; start: none
   Block then_response;
-  Block else_response;               // only of when_else
-  std::optional<Expression> resume;  // of safety; nothing: only a person resumes
+  Block else_response;               // only for when_else
+  std::optional<Expression> resume;  // for safety; nullopt: only a person can resume
   vm::Value cooldown = 0;            // thousandths of a second; 0: none
   vm::Value waiting = 0;
   bool restarting = false;
@@ -234,24 +233,24 @@ struct Behavior {
   std::vector<Rule> rules;
 };
 
-// A word that the program compares a channel with that learns its words.
+// A word that the program compares a channel with, if the channel learns its words.
 struct LearnedWord {
   ChannelRef channel;
   std::string text;
 };
 
 struct Program {
-  // In the order of their labels, which are yet to be given to the robot's channels.
+  // In the order of their labels. They are not yet added to the robot's channels.
   std::vector<LearnedWord> words;
   std::vector<Variable> variables;
   std::vector<Check> checks;
   std::vector<Motion> motions;
   std::vector<Rule> safety;
   std::vector<Behavior> behaviors;  // priorities descending, distinct
-  // LIMIT … SPEED, by place in Robot::actuators; the stricter of this and the robot's own holds.
+  // LIMIT … SPEED, by index in Robot::actuators. The stricter of this and the robot's own limit applies.
   std::vector<std::pair<std::size_t, vm::Value>> speed_limits;
-  bool optimized = false;  // facts are filled in, and codegen may make use of them
-  bool shares = false;     // … and work out equal parts of a condition once: frames have room
+  bool optimized = false;  // facts are filled in, and codegen may use them
+  bool shares = false;     // … and evaluate equal parts of a condition once: the frames have room
 };
 
 }  // namespace robosync::compiler::ir

@@ -1,7 +1,7 @@
-// The one walk over a program. What a statement holds stands in its kParts (ir/program.hpp); a kind
-// of statement without does not compile.
+// Walks over a program. The parts of a statement are listed in its kParts (ir/program.hpp); a kind of statement without kParts
+// does not compile.
 //
-// Everything may be looked at or, where it is not const, changed.
+// Visitors may read the parts, and change them if they are not const.
 #pragma once
 
 #include <concepts>
@@ -33,8 +33,8 @@ void visit_part(Part& part, const OnExpression& on_expression, const OnBlock& on
   }
 }
 
-// The expressions and the blocks of a statement, in the program's order; not what stands in those
-// blocks. `statement`: a ir::Statement, or the node in it.
+// Visits the expressions and blocks of a statement, in the program's order, but not the contents of the blocks. `statement`: an
+// ir::Statement, or its node.
 template <typename Statement, typename OnExpression, typename OnBlock>
 void for_each_part(Statement& statement, const OnExpression& on_expression,
                    const OnBlock& on_block) {
@@ -55,7 +55,7 @@ void for_each_block(Statement& statement, const OnBlock& on_block) {
       statement, [](const auto&) {}, on_block);
 }
 
-// Every statement of a block, inner ones included, outer ones first.
+// Visits every statement of a block and of its inner blocks, outer ones first.
 template <typename Block, typename Visit>
 requires std::same_as<std::remove_const_t<Block>, ir::Block>
 void for_each_statement(Block& block, const Visit& visit) {
@@ -65,7 +65,7 @@ void for_each_statement(Block& block, const Visit& visit) {
   }
 }
 
-// Every statement that is of one kind, likewise.
+// Visits every statement of one kind, in the same order.
 template <typename Node, typename Block, typename Visit>
 void for_each_of(Block& block, const Visit& visit) {
   for_each_statement(block, [&](auto& statement) {
@@ -73,7 +73,7 @@ void for_each_of(Block& block, const Visit& visit) {
   });
 }
 
-// Every rule: SAFETY, then the behaviours' in their order.
+// Visits every rule: SAFETY first, then those of the behaviours in order.
 template <typename AnyProgram, typename Visit>
 requires std::same_as<std::remove_const_t<AnyProgram>, ir::Program>
 void for_each_rule(AnyProgram& program, const Visit& visit) {
@@ -84,7 +84,7 @@ void for_each_rule(AnyProgram& program, const Visit& visit) {
       visit(rule);
 }
 
-// The responses of a rule: one, or two with ELSE; the other one is empty.
+// Visits the responses of a rule: one, or two with ELSE. An empty one is visited, too.
 template <typename Rule, typename Visit>
 void for_each_response(Rule& rule, const Visit& visit) {
   visit(rule.then_response);

@@ -51,7 +51,7 @@ Fact fact_of_channel(const Robot& robot, ChannelRef ref) {
 }
 
 Fact annotate_time_word(Expression& time_word, const Sight& sight) {
-  const LocalFacts nothing;  // a local may not have got its value yet
+  const LocalFacts nothing;  // a local may not have its value yet
   const Sight any{sight.robot, sight.anytime, sight.anytime, nothing};
   for (Expression& operand : time_word.operands)
     annotate(operand, any);

@@ -1,4 +1,4 @@
-// What is proved of every part of an expression, from what is proved of that which it reads.
+// Proves facts for every part of an expression, from the facts of the values that it reads.
 #pragma once
 
 #include <map>
@@ -9,19 +9,19 @@
 
 namespace robosync::compiler {
 
-using VariableFacts = std::vector<Fact>;         // by place in ir::Program::variables
+using VariableFacts = std::vector<Fact>;         // by index in ir::Program::variables
 using LocalFacts = std::map<std::size_t, Fact>;  // by ir::Local::number
 
-// What an expression reads, when it is evaluated.
+// The facts of the values that an expression reads when it is evaluated.
 struct Sight {
   const Robot& robot;
   const VariableFacts& now;  // here
   const VariableFacts&
-      anytime;  // in any step: time words in a response are evaluated in all of them
+      anytime;  // in any step: time words in a response are evaluated in every step
   const LocalFacts& locals;
 };
 
-// Fills in Expression::fact of all its parts; gives that of the whole.
+// Fills in Expression::fact of all its parts; returns the fact of the whole.
 Fact annotate(Expression& expression, const Sight& sight);
 
 }  // namespace robosync::compiler

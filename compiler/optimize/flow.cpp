@@ -21,8 +21,8 @@ WriteFacts Flow::follow(ir::Block& response, const VariableFacts& entry, bool in
   return std::move(writes_);
 }
 
-// Of a variable that is raised or lowered again in the same run, the sum may have left its range before:
-// what it is then, no single statement says. In a loop one statement is as good as two.
+// A variable may be raised or lowered more than once in the same run. Then the sum may already have left its range, and no single
+// statement bounds it. A statement in a loop counts twice.
 void Flow::note_sums(const ir::Block& response) {
   std::vector<unsigned> count(program_.variables.size());
   const auto note = [&](const ir::Set& set) {
@@ -44,7 +44,7 @@ void Flow::block(ir::Block& statements, State& state) {
     std::visit([&](auto& node) { visit(node, state); }, statement.node);
 }
 
-// What neither holds blocks nor remembers a value: its expressions are looked at, then it pauses.
+// For statements that hold no blocks and set nothing: annotates the expressions, then pauses if the statement does.
 template <typename Node>
 void Flow::visit(Node& node, State& state) {
   for_each_part(
@@ -62,7 +62,7 @@ void Flow::visit(ir::Local& local, State& state) {
 
 // ---- writes
 
-// To set something unknown does nothing.
+// SET to an unknown value does nothing.
 void Flow::visit(ir::Set& set, State& state) {
   const ir::Variable& variable = program_.variables[set.variable];
   Fact& cell = state.variables[set.variable];
@@ -111,7 +111,7 @@ void Flow::visit(ir::WaitUntil& wait, State& state) {
   look(wait.condition, state);
 }
 
-// Its body runs again and again.
+// The body runs repeatedly.
 void Flow::visit(ir::Follow& follow, State& state) {
   if (follow.lasts) look(*follow.lasts, state);
   pause(state);
@@ -137,13 +137,13 @@ void Flow::branch(ir::Block& statements, State& state, bool may_run) {
   if (!may_run) --dead_;
 }
 
-// The verifier reads code once, from its start to its end: a pause on one way takes what the
-// response owns from the ways that stand behind it, too.
+// The verifier reads code once, from start to end: a pause on one path also ends the response's ownership on the paths that come
+// later in the code.
 void Flow::pass(const ir::Block& before, State& state) {
   if (pauses(before)) std::fill(state.owned.begin(), state.owned.end(), Owned::no);
 }
 
-// What a block writes is owned until that block ends.
+// Variables written in a block are owned until the block ends.
 void Flow::visit(ir::If& choice, State& state) {
   const Fact condition = look(choice.condition, state);
   State then_state = state, else_state = state;
@@ -158,7 +158,7 @@ void Flow::visit(ir::If& choice, State& state) {
   if (!condition.known) after = merged(after, state);
   for (std::size_t i = 0; i < state.owned.size(); ++i)
     after.owned[i] = std::min(after.owned[i], state.owned[i]);
-  pass(choice.then_block, after);  // also of a side that never runs, which the code still has
+  pass(choice.then_block, after);  // even if a side never runs: its code is still there
   pass(choice.else_block, after);
   state = std::move(after);
 }
@@ -181,14 +181,14 @@ void Flow::visit(ir::Pick& pick, State& state) {
 
 namespace {
 
-// What a measured step depends on may itself grow in the loop: i, then i * i, then their sum.
+// The amount that a round adds may itself grow in the loop: i, then i * i, then their sum.
 constexpr unsigned kMeasurings = 3;
 
 bool is_variable(const Expression& expression, std::size_t place) {
   return expression.operation == Operation::variable && expression.index == place;
 }
 
-// What `set` adds to its variable, if it does no more than that.
+// The amount that `set` adds to its variable; nullopt if it does anything else.
 std::optional<Fact> step_of(const ir::Set& set) {
   if (set.relative) return set.value.fact;
   const auto& operands = set.value.operands;
@@ -212,7 +212,7 @@ void Flow::note_growth(const ir::Set& set) {
   growth.regular = growth.regular && step && inner_loops_ == 0 && !sum;
   if (!step) return;
   Fact once_at_most = either(*step, fact_of(0));
-  once_at_most.known = true;  // what is unknown changes nothing
+  once_at_most.known = true;  // an unknown amount adds nothing
   growth.step = add(growth.step, once_at_most);
 }
 
@@ -250,7 +250,7 @@ void Flow::begin_resting(State& state) const {
   state.barred = std::move(barred);
 }
 
-// The body runs `times`, at least once, and never gives up the processor.
+// The body runs `times`, at least once, and never pauses.
 void Flow::counted(ir::Repeat& repeat, vm::Value times, State& state) {
   State head = state;
   forget_written(repeat.body, head);
@@ -265,7 +265,7 @@ void Flow::counted(ir::Repeat& repeat, vm::Value times, State& state) {
   state = std::move(head);
 }
 
-// What one round from `head` on does.
+// Determines the effect of one round that starts in the state `head`.
 Flow::Growths Flow::measure(ir::Repeat& repeat, State head) {
   Growths growths(program_.variables.size());
   const unsigned outer = inner_loops_;
@@ -277,7 +277,7 @@ Flow::Growths Flow::measure(ir::Repeat& repeat, State head) {
   return growths;
 }
 
-// The variables at the start of a round, after up to `times` others.
+// The variables at the start of a round, after up to `times` earlier rounds.
 Flow::State Flow::grown(const ir::Repeat& repeat, const State& before, const Growths& growths,
                         vm::Value times) const {
   State head = before;
@@ -291,8 +291,8 @@ Flow::State Flow::grown(const ir::Repeat& repeat, const State& before, const Gro
   return head;
 }
 
-// Has variables written before the loop if a statement that runs in every round then can compute
-// them in place. They are known: unlike a band, a variable that is set always is.
+// Writes variables before the loop if statements that run in every round can then compute them in place. Such a variable is
+// known: unlike a band, a variable that is set always is.
 void Flow::claim(ir::Repeat& repeat, State& head) {
   const auto owned_before = head.owned;
   const auto own = [](std::vector<Owned>& owned, const ir::Set& set) {

@@ -1,10 +1,8 @@
-// Follows a response from its start to its end, and fills in what is proved of each of its
-// expressions, and which of its writes can be made in place.
+// Follows a response from start to end. Fills in the facts of its expressions, and which of its writes can be made in place.
 //
-// Between two pauses a variable is what this response has set; a pause forgets that, for the frame
-// is latched again. A loop begins with what its body can make of the variables: of one that every
-// round raises by some amount, the rounds are counted; of all others anything is assumed that they
-// can ever be.
+// Between two pauses, a variable has the value that this response set. A pause forgets it, because the frame is latched again. A
+// loop begins with the values that its body can produce: if every round adds an amount to a variable, the rounds are counted; any
+// other variable may have any value that it can ever have.
 #pragma once
 
 #include <optional>
@@ -13,31 +11,31 @@
 
 namespace robosync::compiler {
 
-// What a response can make of each variable; nothing: it never writes it.
+// The values that a response can write to each variable; nullopt: it never writes it.
 struct WriteFacts {
-  std::vector<std::optional<Fact>> results;      // what its cell holds then
-  std::vector<std::optional<Fact>> differences;  // of RAISE and LOWER: what is added
+  std::vector<std::optional<Fact>> results;      // the value of the cell afterwards
+  std::vector<std::optional<Fact>> differences;  // of RAISE and LOWER: the amount that is added
 };
 
 class Flow {
 public:
-  // `anytime`: what the variables can be whenever they are read.
+  // `anytime`: facts that hold whenever a variable is read.
   Flow(const ir::Program& program, const Robot& robot, const VariableFacts& anytime)
       : program_(program), robot_(robot), anytime_(anytime) {}
 
-  // `entry`: what the variables can be when it starts.
+  // `entry`: facts that hold when the response starts.
   WriteFacts follow(ir::Block& response, const VariableFacts& entry, bool in_place);
 
 private:
-  enum class Owned : std::uint8_t { no, shifted, assigned };  // what was written in this run
+  enum class Owned : std::uint8_t { no, shifted, assigned };  // how it was written in this run
   struct State {
     VariableFacts variables;
     std::vector<Owned> owned;
-    // What the verifier takes for owned, which may be more; and what it had for owned when a loop
-    // that pauses began: that is not computed in place before the first pause.
+    // `held`: what the verifier considers owned, which may be more. `barred`: what was held when a loop that pauses began; such
+    // variables are not computed in place before the first pause.
     std::vector<bool> held, barred;
   };
-  // What one round of a loop does to a variable, if it only adds to it.
+  // How one round of a loop changes a variable. `regular`: it only adds to it.
   struct Growth {
     bool written = false;
     bool regular = true;
@@ -47,7 +45,7 @@ private:
 
   void block(ir::Block& statements, State& state);
   template <typename Node>
-  void visit(Node& node, State& state);  // all others
+  void visit(Node& node, State& state);  // all other statements
   void visit(ir::Local& local, State& state);
   void visit(ir::Set& set, State& state);
   void visit(ir::WaitUntil& wait, State& state);
@@ -56,10 +54,10 @@ private:
   void visit(ir::Repeat& repeat, State& state);
   void visit(ir::Pick& pick, State& state);
 
-  // `may_run`: otherwise the block is only looked at, and counts for nothing.
+  // `may_run`: if false, facts are filled in, but writes in the block do not count.
   void branch(ir::Block& statements, State& state, bool may_run);
   void pause(State& state) const;
-  // The way of `state` stands behind that of `before`.
+  // The path of `state` comes later in the code than `before`.
   static void pass(const ir::Block& before, State& state);
   void forget_written(const ir::Block& body, State& state) const;
   void begin_resting(State& state) const;
@@ -83,9 +81,9 @@ private:
   WriteFacts writes_;
   bool in_place_ = false;
   std::vector<bool> sums_;      // variables that a response raises or lowers more than once
-  Growths* growths_ = nullptr;  // while a loop's body is only measured
+  Growths* growths_ = nullptr;  // set while a loop's body is only measured
   unsigned inner_loops_ = 0;    // in that body
-  unsigned dead_ = 0;           // blocks around, that never run
+  unsigned dead_ = 0;           // enclosing blocks that never run
 };
 
 }  // namespace robosync::compiler

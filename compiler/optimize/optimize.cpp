@@ -22,7 +22,7 @@ void simplify(ir::Rule& rule) {
   simplify(rule.else_response);
 }
 
-// Facts of responses, then those of conditions.
+// Proves the facts of responses, then those of conditions.
 void prove(ir::Program& program, const Robot& robot) {
   const VariableFacts facts = prove_variables(program, robot);
   const LocalFacts no_locals;

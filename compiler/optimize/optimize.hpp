@@ -1,5 +1,5 @@
-// The program again, for fewer and cheaper instructions: what it does stays the same, in every
-// step. docs/optimizer.md says what is proved and what is done with it.
+// Rewrites the program with fewer and cheaper instructions. Its behaviour stays the same in every step. docs/optimizer.md
+// describes the facts and the rewrites.
 #pragma once
 
 #include "compiler/config/robot.hpp"
@@ -7,8 +7,7 @@
 
 namespace robosync::compiler {
 
-// `program` as sema made it. The result has its facts filled in, and the same rules in the same
-// order.
+// `program` as sema made it. The result has its facts filled in, and the same rules in the same order.
 [[nodiscard]] ir::Program optimize(ir::Program program, const Robot& robot);
 
 }  // namespace robosync::compiler

@@ -1,5 +1,5 @@
-// What draws a random number, remembers the past or may divide by zero stays: the program would
-// go on differently without it, or not say that it divided by zero.
+// An expression that draws a random number, remembers the past or may divide by zero stays. Without it the program would continue
+// differently, or would not report the division by zero.
 #include "compiler/optimize/prune.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace robosync::compiler {
 namespace {
 
-// Does a constant cost less than a cell, as this operand?
+// True if a constant costs less than a cell as this operand.
 bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
   const bool whole = value % vm::kScale == 0;
   switch (operation) {
@@ -32,9 +32,9 @@ bool takes_constant(Operation operation, std::size_t place, vm::Value value) {
   }
 }
 
-// By itself, a cell is as good as a constant, and sometimes better.
+// Folds only operands that gain by it: a cell on its own is as cheap as a constant, and sometimes cheaper.
 void fold_operands(Expression& expression) {
-  if (is_time_word(expression.operation)) return;  // as simplify() does
+  if (is_time_word(expression.operation)) return;  // like simplify()
   for (std::size_t place = 0; place < expression.operands.size(); ++place) {
     Expression& operand = expression.operands[place];
     fold_operands(operand);
@@ -62,8 +62,7 @@ void fold(Expression& expression) {
   expression.fact = fact;
 }
 
-// Time words in a response are evaluated in every step, whether the response runs or not; and the
-// robot wakes up for them.
+// Time words in a response are evaluated in every step, whether or not the response runs, and the robot wakes up for them.
 bool has_time_words(const ir::Block& block) {
   bool found = false;
   for_each_statement(block, [&](const ir::Statement& statement) {
@@ -74,8 +73,8 @@ bool has_time_words(const ir::Block& block) {
   return found;
 }
 
-// A response owns all actuators that it has commands for while it runs, also those of branches; and
-// which behaviours command an actuator ranks its thread.
+// While a response runs, it owns every actuator that it has commands for, even in branches that do not run. The actuators that a
+// behaviour commands also affect the rank of its thread.
 bool has_effect(const ir::Block& block) {
   return has_time_words(block) || any_command(block, [](const ir::Command&) { return true; });
 }
@@ -104,15 +103,15 @@ void Pruner::prune_parts(Node& node) {
       [this](ir::Block& inner) { block(inner); });
 }
 
-// A loop that is said to run no times has no code. One that is only proved to has, if its body
-// matters without being run.
+// A constant count of zero in the source gives a loop no code. If the count is only proved to be zero, the loop stays if its body
+// has effects without running.
 void Pruner::keep_claims(ir::Repeat& repeat) {
   const Expression control = repeat.control;
   prune_parts(repeat);
   if (constant_count(repeat) == 0 && has_effect(repeat.body)) repeat.control = control;
 }
 
-// The statement, with its parts pruned; or what is left of it.
+// Appends the statement with its parts pruned, or what is left of it.
 void Pruner::keep(ir::Statement statement, ir::Block& result) {
   if (auto* const repeat = std::get_if<ir::Repeat>(&statement.node))
     keep_claims(*repeat);
@@ -124,7 +123,7 @@ void Pruner::keep(ir::Statement statement, ir::Block& result) {
     result.push_back(std::move(statement));
 }
 
-// Also turns an IF with nothing but an ELSE around: with the condition unknown neither runs.
+// Also turns an IF with only an ELSE into one with only a THEN: if the condition is unknown, neither runs.
 void Pruner::choose(ir::Statement statement, ir::Block& result) {
   auto& choice = std::get<ir::If>(statement.node);
   const Fact& condition = choice.condition.fact;
@@ -149,8 +148,8 @@ void Pruner::choose(ir::Statement statement, ir::Block& result) {
   result.push_back(std::move(statement));
 }
 
-// A condition that is never true starts nothing. The rule stays, so that rules keep their numbers;
-// where there is an ELSE, false and unknown differ.
+// A condition that is never true starts nothing. The rule stays, so that rules keep their numbers. In a rule with ELSE, false and
+// unknown differ, so its condition is kept.
 void prune(ir::Rule& rule) {
   fold(rule.condition);
   const bool only_when_true = rule.kind == vm::RuleKind::when || rule.kind == vm::RuleKind::while_;
@@ -165,7 +164,7 @@ void prune(ir::Rule& rule) {
 
 }  // namespace
 
-// Of SAFETY rules only the numbers: what they do is not touched.
+// In SAFETY rules, only conditions are folded; the responses are not changed.
 void prune(ir::Program& program) {
   for (ir::Rule& rule : program.safety)
     fold(rule.condition);

@@ -1,5 +1,5 @@
-// Leaves out what never runs, and what is constant as far as facts say. Facts must be filled in;
-// those of new parts are not.
+// Removes code that never runs, and replaces expressions that facts prove constant. Facts must be filled in before; new parts
+// have none.
 #pragma once
 
 #include "compiler/ir/program.hpp"

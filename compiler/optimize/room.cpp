@@ -9,10 +9,10 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMostLocals = 32;           // more for one behaviour
-constexpr std::size_t kRegistersOfStatement = 2;  // beside those of its expressions
+constexpr std::size_t kMostLocals = 32;           // extra locals for one behaviour
+constexpr std::size_t kRegistersOfStatement = 2;  // in addition to those of its expressions
 
-// A part leaves its value in one register while the part beside it is worked out.
+// One part keeps its value in a register while the part next to it is evaluated.
 std::size_t registers_of(const Expression& expression) {
   if (expression.operation == Operation::input || expression.operation == Operation::variable ||
       expression.operation == Operation::local)
@@ -30,7 +30,7 @@ std::size_t operations_in(const Expression& expression) {
   return count;
 }
 
-// What counts for the frame of one behaviour.
+// Counts the cells for the frame of one behaviour.
 class Count {
 public:
   void add(const ir::Rule& rule) {
@@ -57,7 +57,7 @@ private:
     registers_ = std::max(registers_, kRegistersOfStatement);
   }
 
-  // Each part that is kept stands there twice at least.
+  // Each shared part occurs at least twice.
   void add_condition(const Expression& condition) {
     registers_ = std::max(registers_, registers_of(condition) + operations_in(condition) / 2);
     add_inputs(condition);
@@ -70,7 +70,7 @@ private:
       add_inputs(operand);
   }
 
-  // In a response each has a rule of its own, whose truth has a cell.
+  // In a response, each time word has its own watch rule, whose truth value needs a cell.
   void add_time_words(const Expression& expression) {
     if (is_time_word(expression.operation)) {
       ++truths_;

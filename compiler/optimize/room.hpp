@@ -1,5 +1,5 @@
-// How many cells of frames the optimiser may use more than the program as written does, so that
-// what fits the robot still does when it is optimised.
+// How many more frame cells the optimiser may use than the program as written, so that a program that fits the robot still fits
+// when it is optimised.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace robosync::compiler {
 
-// The cells that the frame of a behaviour with these rules has at most, as they are written: what
-// they read and set, what their statements keep (kCells), the truths of time words, registers.
-// Counts the registers that conditions need when their equal parts are worked out once.
+// An upper bound on the frame cells of a behaviour with these rules, as written: inputs and variables, the cells of statements
+// (kCells), the truth values of time words, registers. Includes the registers for equal parts of conditions that are evaluated
+// once.
 [[nodiscard]] std::size_t cells_at_most(const std::vector<ir::Rule>& rules);
 
 struct Room {

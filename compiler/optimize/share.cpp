@@ -1,6 +1,6 @@
-// For each statement, from the outer parts of its expressions inwards: is the same part needed
-// again, in the statement or in those that follow? What begins a statement is evaluated whenever
-// the statement is, so a local in front of it costs nothing that was not paid for before.
+// For each statement, and from the outer parts of its expressions inwards: looks for the same part in the statement and in those
+// that follow. The expressions at the beginning of a statement are always evaluated when it runs, so moving one to a local in
+// front of it adds no cost.
 #include "compiler/optimize/share.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ bool reads(const Expression& expression, std::size_t variable) {
                      [&](const Expression& operand) { return reads(operand, variable); });
 }
 
-// Does it read what is latched again in each step?
+// True if it reads values that are latched again in each step.
 bool reads_input(const Expression& expression) {
   if (expression.operation == Operation::variable || expression.operation == Operation::input ||
       reads_time(expression))
@@ -44,7 +44,7 @@ bool reads_input(const Expression& expression) {
   return std::any_of(expression.operands.begin(), expression.operands.end(), reads_input);
 }
 
-// Does a statement, or one inside of it, make `expression` another number?
+// True if a statement, or one inside it, changes the value of `expression`.
 bool spoils(const ir::Statement& statement, const Expression& expression) {
   if (const auto* set = std::get_if<ir::Set>(&statement.node))
     return reads(expression, set->variable);
@@ -56,7 +56,7 @@ bool spoils(const ir::Statement& statement, const Expression& expression) {
   return found;
 }
 
-// What is evaluated when the statement begins, and only then.
+// The expressions that are evaluated when the statement begins, and only then.
 void for_each_beginning(ir::Statement& statement, const Visit& visit) {
   if (std::holds_alternative<ir::WaitUntil>(statement.node)) return;
   const auto* repeat = std::get_if<ir::Repeat>(&statement.node);
@@ -64,7 +64,7 @@ void for_each_beginning(ir::Statement& statement, const Visit& visit) {
   for_each_expression(statement, visit);
 }
 
-// Puts a local in the place of a number, wherever that is worked out again.
+// Replaces a number by a local wherever the number is computed again.
 class Replacement {
 public:
   Replacement(const Expression& number, std::size_t local) : number_(number) {
@@ -74,7 +74,7 @@ public:
   }
 
   [[nodiscard]] unsigned found() const { return found_; }
-  // Only counts, until told otherwise.
+  // Before this call, occurrences are only counted.
   void replace() { replaces_ = true; }
 
   void in(Expression& expression) {
@@ -88,7 +88,7 @@ public:
       in(operand);
   }
 
-  // False when the number is another one from there on.
+  // Returns false if the number may have another value after the statement.
   bool in(ir::Statement& statement) {
     const bool spoilt = spoils(statement, number_);
     for_each_beginning(statement, [this](Expression& expression) { in(expression); });
@@ -111,7 +111,7 @@ private:
 
 class Sharer {
 public:
-  // `left`: how many locals may still be made.
+  // `left`: how many more locals may be added.
   Sharer(ir::Block& response, std::size_t& left) : left_(left) {
     for_each_of<ir::Local>(response, [this](const ir::Local& local) {
       next_local_ = std::max(next_local_, local.number + 1);
@@ -121,7 +121,7 @@ public:
 
 private:
   void block(ir::Block& statements);
-  // The first part of `expression` that pays in `statements` from `from` on.
+  // Shares the first part of `expression` that occurs again in `statements` from `from` on.
   bool share_part(Expression& expression, ir::Block& statements, std::size_t from);
   static bool go_through(Replacement& replacement, ir::Block& statements, std::size_t from);
 
@@ -134,7 +134,7 @@ void Sharer::block(ir::Block& statements) {
     bool found = true;
     while (found && left_ > 0) {
       found = false;
-      // A copy: to share a part puts a statement in front of this one.
+      // A copy, because sharing a part inserts a statement in front of this one.
       std::vector<Expression> beginnings;
       for_each_beginning(statements[at],
                          [&](Expression& expression) { beginnings.push_back(expression); });

@@ -1,12 +1,11 @@
-// Numbers that are worked out twice in a response, from the same cells with nothing written in
-// between, are worked out once, into a local.
+// Numbers that a response computes twice from the same cells, with no write in between, are computed once and kept in a local.
 #pragma once
 
 #include "compiler/optimize/room.hpp"
 
 namespace robosync::compiler {
 
-// As far as there is room for the locals.
+// Stops when there is no room for more locals.
 void share_numbers(ir::Program& program, const Room& room);
 
 }  // namespace robosync::compiler

@@ -71,7 +71,7 @@ void simplify_negate(Expression& expression) {
 
 // ---- with two operands
 
-// x + 0, x - 0, x * 1, x / 1, x AND TRUE, x OR FALSE: also when x is unknown.
+// x + 0, x - 0, x * 1, x / 1, x AND TRUE, x OR FALSE: these also hold if x is unknown.
 bool changes_nothing(Operation operation, const Expression& right) {
   switch (operation) {
     case Operation::add:
@@ -99,7 +99,7 @@ bool divides_by_zero(const Expression& expression) {
          is_constant(expression.operands[1], 0);
 }
 
-// Constants stand on the right where the sides can be exchanged.
+// Puts constants on the right if the operands can be exchanged.
 void order_operands(Expression& expression) {
   auto& operands = expression.operands;
   if (!is_constant(operands[0]) || is_constant(operands[1])) return;
@@ -111,8 +111,8 @@ void order_operands(Expression& expression) {
 
 // ---- comparisons of a computed number with a constant
 
-// The computation with a constant that `expression` does, if its result only rises or only falls
-// with the other operand: place 0 or 1 of that, else 2.
+// For a computation with a constant whose result only rises or only falls with the other operand: the index of that operand, 0 or
+// 1. Otherwise 2.
 std::size_t monotonous_operand(const Expression& expression) {
   const auto& operands = expression.operands;
   switch (expression.operation) {
@@ -137,8 +137,7 @@ vm::Value computed(const Expression& expression, std::size_t place, vm::Value va
                     : compute(expression.operation, other, value);
 }
 
-// x / 8 < 50 becomes x < 399.996: where the truth changes is found with the robot's own
-// arithmetic.
+// x / 8 < 50 becomes x < 399.996. Finds the value where the truth changes with the robot's own arithmetic.
 void compare_operand(Expression& comparison) {
   Expression& left = comparison.operands[0];
   const std::size_t place = monotonous_operand(left);

@@ -1,13 +1,12 @@
-// The same expression with fewer operations, whatever its parts turn out to be.
+// Rewrites an expression with fewer operations, whatever the values of its parts.
 #pragma once
 
 #include "compiler/ir/program.hpp"
 
 namespace robosync::compiler {
 
-// Unknown stays unknown, and what saturates still does. Facts are not looked at, and those of new
-// parts are not filled in. Time words are left alone: equal ones in a response share a rule, so to
-// make two of them equal would change the numbers of the rules behind.
+// Unknown stays unknown, and saturation is preserved. Facts are not used, and new parts have none. Time words are left alone:
+// equal ones in a response share a rule, so making two of them equal would change the numbers of later rules.
 void simplify(Expression& expression);
 
 // NOT `condition`, simplified.

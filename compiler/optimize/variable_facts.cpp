@@ -1,9 +1,8 @@
-// By iteration: at first a variable is what it starts with; then all responses are followed again
-// and again, each time with what they were found to write, until nothing is added. What has grown a
-// few times is taken to grow as far as it can.
+// Iterates to a fixed point. At first a variable has only its initial value. Then all responses are followed repeatedly, each
+// time with the values that they were found to write, until nothing is added. A range that has grown a few times is widened, so
+// that the iteration ends.
 //
-// A response to AT START runs once. If it does so in one go, it does not see what it has written
-// itself, so its writes do not feed on themselves.
+// A response to AT START runs once. If it does not pause, it never sees its own earlier writes, so they do not feed back into it.
 #include "compiler/optimize/variable_facts.hpp"
 
 #include <algorithm>
@@ -17,23 +16,23 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr unsigned kPatience = 3;     // changes, before what grows is widened
-constexpr unsigned kMaxChanges = 12;  // changes, before it is widened to the variable's limits
+constexpr unsigned kPatience = 3;     // changes before a growing range is widened
+constexpr unsigned kMaxChanges = 12;  // changes before it is widened to the variable's limits
 
-// What a response leaves in a variable.
+// The values that a response writes to a variable.
 struct Written {
   std::optional<Fact> fact;
   unsigned changes = 0;
 };
 
-struct Writer {  // a response, as far as variables go
+struct Writer {  // a response and its writes
   ir::Block* block = nullptr;
   bool once = false;
   bool safety = false;
   std::vector<Written> writes{};  // by variable
 };
 
-// The numbers of a program: what grows often stops at one of them.
+// The numbers of a program: growth often stops at one of them.
 using Thresholds = std::set<vm::Value>;
 const Thresholds kNoThresholds;
 
@@ -53,8 +52,7 @@ void add_numbers(const ir::Block& block, Thresholds& thresholds) {
   });
 }
 
-// Widens `next` in the directions in which it has grown. That it is whole is not affected: sums
-// that saturate are not.
+// Widens `next` in the directions in which it has grown. `whole` is not affected, because sums that saturate are not whole.
 Fact widened(const Fact& before, Fact next, const ir::Variable& variable,
              const Thresholds& thresholds) {
   if (next.low < before.low) {
@@ -121,7 +119,7 @@ void Prover::count_shifts() {
     });
 }
 
-// A band is unknown when its input is, or between bands. What was kept may come from another program.
+// A band is unknown if its input is, or between bands. A KEPT value may come from another program.
 Fact Prover::initial(std::size_t place) const {
   const ir::Variable& variable = program_.variables[place];
   if (variable.kind == vm::VariableKind::band) return {false, true, 0, vm::kValueMax};
@@ -130,11 +128,11 @@ Fact Prover::initial(std::size_t place) const {
   const Fact start = fact_of(variable.initial);
   if (variable.fade == 0) return start;
   Fact fading = either(start, fact_of(variable.fades_to));
-  fading.whole = false;  // on its way
+  fading.whole = false;  // while it fades
   return fading;
 }
 
-// Differences of several responses come together in one step, whatever each of them has seen.
+// Several responses may add to the variable in the same step, whatever value each of them saw.
 Fact Prover::shifted(std::size_t place, const Fact& result, const Fact& difference) const {
   const ir::Variable& variable = program_.variables[place];
   Fact sum = result;
@@ -147,7 +145,7 @@ Fact Prover::shifted(std::size_t place, const Fact& result, const Fact& differen
   return sum;
 }
 
-// The variables as all responses leave them, but this one if it runs once only.
+// The facts that hold after all responses. Leaves out the writes of `response`, which runs once; null: leaves out none.
 VariableFacts Prover::without(const Writer* response) const {
   VariableFacts facts;
   for (std::size_t i = 0; i < program_.variables.size(); ++i) {
@@ -162,7 +160,7 @@ VariableFacts Prover::without(const Writer* response) const {
   return facts;
 }
 
-// Did it write more than before?
+// True if the response wrote more than before.
 bool Prover::follow(Writer& response, const VariableFacts& anytime) {
   Flow flow(program_, robot_, anytime);
   const VariableFacts entry = response.once ? without(&response) : anytime;

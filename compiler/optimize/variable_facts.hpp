@@ -1,11 +1,11 @@
-// What every variable of a program can be, whenever it is read.
+// Facts about each variable of a program that hold whenever it is read.
 #pragma once
 
 #include "compiler/optimize/expression_facts.hpp"
 
 namespace robosync::compiler {
 
-// Fills in what is proved of the responses on the way (flow.hpp).
+// Also fills in the facts of the responses (flow.hpp).
 [[nodiscard]] VariableFacts prove_variables(ir::Program& program, const Robot& robot);
 
 }  // namespace robosync::compiler

@@ -1,4 +1,4 @@
-// What names mean; the trees are walked over in walk.cpp.
+// Resolves names; walk.cpp walks over the trees.
 #include "compiler/query/collector.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ SymbolKind kind_of(const VariableName& variable) {
   }
 }
 
-// The labels of a STATE or CHECK where they are declared.
+// The spans of a STATE's or CHECK's labels in its declaration.
 std::vector<Span> places_of_labels(const VariableName& variable) {
   std::vector<Span> places;
   if (const auto* const* state = std::get_if<const ast::State*>(&variable.declared))
@@ -54,7 +54,7 @@ void Collector::collect() {
 
 std::size_t Collector::intern(Symbol symbol) {
   const Span place = symbol.declared.value_or(Span{});
-  // Several things may be declared by one place: an actuator and the words that its device brings along.
+  // One place may declare several symbols: an actuator and the words that come with its device.
   Key key{place.file, place.begin,
           std::to_string(static_cast<int>(symbol.kind)) + fold_name(symbol.name)};
   const auto [known, added] = known_.emplace(std::move(key), symbols.size());
@@ -92,7 +92,7 @@ void Collector::collect_robot() {
     add(SymbolKind::group, robot.groups[g].name, g);
 }
 
-// robot.json may say more of a BEHAVIOR: there its name is used.
+// robot.json may describe a BEHAVIOR, too, and uses its name there.
 void Collector::collect_behaviors() {
   for (const BehaviorConfig& config : project_.robot.behaviors) {
     const auto same = [&](const Symbol& symbol) {

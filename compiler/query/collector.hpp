@@ -1,4 +1,4 @@
-// Walks over the trees for Symbols.
+// Walks over the trees and collects Symbols.
 #pragma once
 
 #include <map>
@@ -30,7 +30,7 @@ private:
   void collect_robot();
   void collect_behaviors();
 
-  // ---- looking up; false: it is none of these
+  // ---- looking up; false: the name is not of this kind
   bool parameter(const ast::Name& name);
   bool constant(const ast::Name& name);
   bool variable(const ast::Name& name);
@@ -46,7 +46,7 @@ private:
   // ---- labels
   struct Labels {
     std::vector<std::string> texts;
-    std::vector<Span> places;  // of a STATE or CHECK; else empty
+    std::vector<Span> places;  // of a STATE or CHECK; otherwise empty
     std::optional<Span> owner_place;
     std::string owner;
   };

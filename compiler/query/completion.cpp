@@ -33,7 +33,7 @@ public:
   }
 
 private:
-  // ---- what stands in front
+  // ---- what comes before the cursor
   [[nodiscard]] TokenKind back(std::size_t places) const { return expected_.back(places); }
   [[nodiscard]] std::string_view text(const Token& token) const {
     return project_.sources.file(token.span.file).text(token.span);
@@ -42,7 +42,7 @@ private:
     const Tokens& before = expected_.before;
     return places <= before.size() ? text(before[before.size() - places]) : std::string_view();
   }
-  // The first token of the statement that the place is in.
+  // The first token of the statement at the cursor.
   [[nodiscard]] std::size_t statement() const {
     const Tokens& before = expected_.before;
     std::size_t first = before.size();
@@ -82,7 +82,7 @@ private:
     for (const Symbol& symbol : symbols_.all())
       if (std::ranges::find(kinds, symbol.kind) != kinds.end()) add(symbol);
   }
-  // The BEHAVIOR or DEFINE that the place is in.
+  // The BEHAVIOR or DEFINE around the cursor.
   [[nodiscard]] std::string_view scope() const {
     const Tokens& before = expected_.before;
     const bool has =
@@ -112,7 +112,7 @@ private:
     return text.substr(0, text.find('\n'));
   }
 
-  // Of the operand that ends so many tokens back.
+  // The labels of the operand that ends this many tokens back.
   void labels(std::size_t places) {
     const bool is_channel = back(places + 1) == Kinds::NAME;
     const std::string_view name = word_back(is_channel ? places + 1 : places);
@@ -140,7 +140,7 @@ private:
       add({word, K::verb, "a command", {}, false});
   }
 
-  // The actuators that are meant: the one that is named already, else all that know the verb.
+  // The actuators that may be meant: the one that is already named, or else all that know the verb.
   [[nodiscard]] std::vector<const ActuatorConfig*> meant(std::size_t first, bool& named) const {
     const std::string_view verb = text(expected_.before[first]);
     std::vector<const ActuatorConfig*> able, told;
@@ -188,7 +188,7 @@ private:
   }
   void targets() { declared({K::actuator, K::group, K::parameter}); }
 
-  // The sounds that the command could mean.
+  // The sounds that fit the command.
   void texts() {
     const std::size_t first = statement();
     if (first >= expected_.before.size() || expected_.before[first].kind != Kinds::NAME) return;
@@ -198,7 +198,7 @@ private:
         if (word.text) add({word.name, K::word, "a text that the device knows", {}, true});
   }
 
-  // ---- names, by what stands in front of them
+  // ---- names, by the tokens in front of them
   void names() {
     const std::size_t first = statement();
     if (gives_a_name()) return;
@@ -226,7 +226,7 @@ private:
       return symbol.kind == K::define && same_name(symbol.name, name);
     });
   }
-  // A name that is given here cannot be known.
+  // A name that is being declared here cannot be completed.
   [[nodiscard]] bool gives_a_name() const {
     const Tokens& before = expected_.before;
     if (is_one_of(back(1), {Kinds::LET, Kinds::REMEMBER, Kinds::STATE, Kinds::TIMER, Kinds::FEELING,
@@ -240,7 +240,7 @@ private:
     return before[0].kind == Kinds::CHECK && expected_.takes(Kinds::MARGIN) &&
            back(1) == Kinds::NEWLINE;
   }
-  // What the word in front asks for; false: nothing in particular.
+  // Completes by the keyword in front; false: the keyword does not determine it.
   bool by_keyword() {
     switch (back(1)) {
       case Kinds::USE:
@@ -274,7 +274,7 @@ private:
         return back(2) == Kinds::LIMIT && limits();
     }
   }
-  // Behind OF, and behind a comma: what the line lists.
+  // After OF, and after a comma: the kind of things that the line lists.
   bool by_item() {
     const TokenKind item = expected_.before[0].kind;
     if (item == Kinds::MOTION) targets();
@@ -293,7 +293,7 @@ private:
       add({std::string(module.name), K::module, "a module of the library",
            comment_above_all(module.text), false});
   }
-  // The comment that a text begins with.
+  // The comment at the start of a text.
   static std::string comment_above_all(std::string_view text) {
     std::string result;
     while (!text.empty() && (text[0] == '%' || text[0] == '#')) {

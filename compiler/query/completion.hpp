@@ -1,4 +1,4 @@
-// What could be written at a place: words that the grammar takes there, and names that fit.
+// What can be written at a place: keywords that the grammar accepts there, and names that fit.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace robosync::compiler::query {
 
 struct Candidate {
   std::string text;
-  std::optional<SymbolKind> kind;  // nothing: a keyword
+  std::optional<SymbolKind> kind;  // nullopt: a keyword
   std::string detail;              // one line: what it is, its unit and range
   std::string text_about;          // sentences; may be empty
   bool is_text = false;            // in quotes
 };
 
 struct Completion {
-  Span typed;  // what of it is there already, and is replaced
+  Span typed;  // the part that is already typed, which is replaced
   std::vector<Candidate> candidates;
 };
 
-// In a program or a module of it.
+// `file`: a program, or one of its modules.
 [[nodiscard]] Completion complete(const Project& project, const Symbols& symbols, FileId file,
                                   std::uint32_t offset);
 

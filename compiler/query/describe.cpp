@@ -86,7 +86,7 @@ std::string about_robot(const Symbol& symbol, const Robot& robot) {
   }
 }
 
-// Of each actuator that knows it.
+// Describes the verb for each actuator that knows it.
 std::string about_verb(const Symbol& symbol, const Robot& robot) {
   std::string text;
   for (const ActuatorConfig& actuator : robot.actuators)
@@ -113,7 +113,7 @@ bool has_no_line(SymbolKind kind) {
   return kind >= SymbolKind::label || kind == SymbolKind::parameter;
 }
 
-// The line that declares it, without its blanks and its comment.
+// The line of the declaration, without the spaces around it.
 std::string line_of(const Symbol& symbol, const Project& project) {
   if (has_no_line(symbol.kind) || !symbol.declared) return {};
   const SourceFile& source = project.sources.file(symbol.declared->file);

@@ -1,4 +1,4 @@
-// What a name is, in words for a person: shown where the mouse rests, and beside a completion.
+// Describes a name in words, for hovers and completions.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@ namespace robosync::compiler::query {
 
 struct Description {
   std::string kind;  // "a channel of touch": one line
-  std::string code;  // how it is declared, in RSL; empty where that says nothing
+  std::string code;  // the declaration in RSL; empty if there is none to show
   std::string text;  // plain sentences, a line each; may be empty
 };
 
 [[nodiscard]] Description describe(const Symbol& symbol, const Project& project);
 
-// Of a verb or a word as one actuator knows it.
+// Describes a verb or a word as this actuator defines it.
 [[nodiscard]] std::string describe_verb(const ActuatorConfig& actuator, const VerbConfig& verb);
 [[nodiscard]] std::string describe_word(const ActuatorConfig& actuator, const WordConfig& word);
 
-// The comment that stands right above the line of a place, without its signs.
+// The comment directly above the line of `offset`, without its comment signs.
 [[nodiscard]] std::string comment_above(const SourceFile& source, std::uint32_t offset);
 
-// What a rule does, if the place is in its first line; else empty.
+// What a rule does, if the place is in its first line; otherwise empty.
 [[nodiscard]] std::string rule_in_english(const Project& project, FileId file,
                                           std::uint32_t offset);
 

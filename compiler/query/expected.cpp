@@ -1,5 +1,4 @@
-// A token that no rule takes is put behind what stands in front of the place: the grammar stops there, and says what it would
-// have taken.
+// Inserts, at the cursor, a token that no rule accepts. The grammar stops there and reports what it would have accepted.
 #include "compiler/query/expected.hpp"
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 namespace robosync::compiler::query {
 namespace {
 
-// Mistakes in front of the place that are mended to get there, and what that may cost.
+// Limits for repairing mistakes before the cursor.
 constexpr int kMends = 6;
 constexpr std::size_t kMendingWork = 40'000;
 
@@ -21,19 +20,19 @@ bool is_word(TokenKind kind) {
   return kind == Kinds::NAME || kind >= Kinds::USE;
 }
 
-// What the grammar would take behind these tokens.
+// The tokens that the grammar would accept after these.
 std::vector<TokenKind> behind(Tokens tokens, const SourceFile& source, std::uint32_t offset) {
   const FileId file = tokens.empty() ? FileId{} : tokens.front().span.file;
   tokens.push_back({Kinds::SIGN, {file, offset, offset}});
   Reader reader(source);
   Budget budget{kMendingWork};
   Diagnostics ignored;
-  const Examples examples({}, source, nullptr);  // of what nobody reads
+  const Examples examples({}, source, nullptr);  // never read
   for (int mends = 0; mends < kMends; ++mends) {
     const Attempt attempt = reader.read(tokens, nullptr);
     if (attempt.complete || attempt.stopped_at >= tokens.size()) return {};
     if (tokens[attempt.stopped_at].kind == Kinds::SIGN) return attempt.expected;
-    // The line cannot end yet, so nothing can begin the next one.
+    // The line cannot end yet, so no token can begin the next one.
     if (tokens[attempt.stopped_at].kind == Kinds::NEWLINE &&
         tokens[attempt.stopped_at + 1].kind == Kinds::SIGN)
       return {};
@@ -46,7 +45,7 @@ bool joins_conditions(TokenKind kind) {
   return is_one_of(kind, {Kinds::AND, Kinds::OR, Kinds::MOD});
 }
 
-// At the start of a line also what goes on with the line before.
+// At the start of a line: adds keywords that continue the line before.
 void add_going_on(const Tokens& piece, const SourceFile& source, std::uint32_t offset,
                   std::vector<TokenKind>& kinds) {
   Tokens open = piece;
@@ -69,7 +68,7 @@ Tokens without_idle_ends_before(Tokens piece) {
   return seen;
 }
 
-// The sign of a comment can only be between tokens.
+// Outside tokens, a comment sign always begins a comment.
 bool is_comment(const SourceFile& source, const Tokens& head, std::uint32_t offset) {
   const std::uint32_t line = source.line_start(source.line_of(offset));
   const std::uint32_t begin = head.empty() ? line : std::max(line, head.back().span.end);

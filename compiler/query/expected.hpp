@@ -1,4 +1,4 @@
-// What the grammar would take at a place, whatever stands behind it.
+// What the grammar accepts at a place, whatever follows it.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 namespace robosync::compiler::query {
 
 struct Expected {
-  // Every token that could come next; names of keywords that could be names there are left out.
+  // Every token that could come next, except keywords that would be names here.
   std::vector<TokenKind> kinds;
-  // What stands in front of it, from the first word of its item, without ends of lines that do not count, and without
-  // the word that is being typed.
+  // The tokens before the place, from the first word of its item, without line ends that do not count and without the word that
+  // is being typed.
   Tokens before;
-  Span typed;  // that word: up to the place
+  Span typed;  // that word, up to the place
   bool in_string = false;
   bool in_comment = false;
 
   [[nodiscard]] bool takes(TokenKind kind) const { return contains(kinds, kind); }
-  // The token so many places back, from 1; the end of the file where there is none.
+  // The token this many places back, counting from 1; END_OF_FILE if there is none.
   [[nodiscard]] TokenKind back(std::size_t places) const {
     return places <= before.size() ? before[before.size() - places].kind : Kinds::END_OF_FILE;
   }

@@ -26,7 +26,7 @@ private:
             has_name ? name.span : span,
             {}};
   }
-  // What stands in its first line.
+  // An item that is named by its first line.
   [[nodiscard]] OutlineItem headed(OutlineKind kind, Span span) const {
     const SourceFile& source = sources_.file(span.file);
     const std::string_view text = source.text(span);

@@ -1,4 +1,4 @@
-// The items of a program, as a list to jump by.
+// The items of a program, as a list for navigation.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ enum class OutlineKind : std::uint8_t { constant, variable, block, define, behav
 struct OutlineItem {
   std::string name;
   OutlineKind kind{};
-  Span span;  // all of it
+  Span span;  // the whole item
   Span name_span;
   std::vector<OutlineItem> inside;
 };
 
-// Of a tree of the parser.
+// From a tree of the parser.
 [[nodiscard]] std::vector<OutlineItem> outline(const ast::Tree& tree, const SourceMap& sources);
 
 }  // namespace robosync::compiler::query

@@ -1,4 +1,4 @@
-// What can be asked about: trees, as the parser made them, and a robot. Neither need be free of mistakes.
+// The input for queries: trees from the parser, and a robot. Either may have mistakes.
 #pragma once
 
 #include <string_view>
@@ -17,8 +17,8 @@ struct LibraryModule {
 struct Project {
   const SourceMap& sources;
   Trees trees;                           // the program first, then its modules
-  const Robot& robot;                    // an empty one when robot.json cannot be read
-  std::vector<LibraryModule> library{};  // what USE could name
+  const Robot& robot;                    // empty if robot.json cannot be read
+  std::vector<LibraryModule> library{};  // the modules that USE can name
 };
 
 }  // namespace robosync::compiler::query

@@ -14,7 +14,7 @@ std::string shown(std::string_view name) {
   return "`" + std::string(name) + "`";
 }
 
-// Are these words names, with nothing else in them? A label may have several.
+// True if the text consists of names only. A label may have several.
 bool is_written_as_name(std::string_view name, bool may_have_several) {
   SourceMap sources;
   const FileId file = sources.add("", std::string(name));
@@ -48,7 +48,7 @@ std::string why_not_called(std::string_view name, const Symbol& symbol, const Pr
   if (!is_written_as_name(name, symbol.kind == SymbolKind::label))
     return shown(name) + " is no name: letters, digits and `_`, and no digit at the beginning";
   if (same_name(symbol.name, name)) return {};
-  // In `SET mood TO calm` a label stands where a number could, so they are not called alike either.
+  // In `SET mood TO calm`, a label is where a number could be, so labels and variables must have different names, too.
   const auto is_taken = [&](const Symbol& other) {
     const bool apart = symbol.kind == SymbolKind::label && other.kind == SymbolKind::label &&
                        other.within != symbol.within;

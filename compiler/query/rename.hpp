@@ -1,4 +1,4 @@
-// Whether a name may be changed, and where it then must be.
+// Tells whether a name may be changed, and to what.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace robosync::compiler::query {
 
-// Why this name cannot be changed in the program `file`; empty: it can be.
+// Why the name cannot be changed in the program `file`; empty: it can.
 [[nodiscard]] std::string why_not_renamed(const Symbol& symbol, FileId file,
                                           const SourceMap& sources);
 
-// Why it cannot be called this; empty: it can be.
+// Why the symbol cannot get this name; empty: it can.
 [[nodiscard]] std::string why_not_called(std::string_view name, const Symbol& symbol,
                                          const Project& project, const Symbols& symbols);
 

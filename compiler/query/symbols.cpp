@@ -21,14 +21,14 @@ Symbols::Symbols(const Project& project) {
   collector.collect();
   symbols_ = std::move(collector.symbols);
   occurrences_ = std::move(collector.occurrences);
-  // A SIGNAL is declared where it is given first.
+  // The first occurrence of a SIGNAL declares it.
   for (Occurrence& one : occurrences_) {
     const Symbol& symbol = symbols_[one.symbol];
     one.declares = one.declares || (symbol.is_there && symbol.declared->file == one.span.file &&
                                     symbol.declared->begin == one.span.begin);
   }
   std::ranges::stable_sort(occurrences_, {}, place_of);
-  // A sensor without channels of its own stands where they do: the first is the sensor.
+  // A sensor without its own channels has the same place as its channels: the first occurrence is the sensor.
   const auto same = [](const Occurrence& a, const Occurrence& b) {
     return place_of(a) == place_of(b);
   };
@@ -42,7 +42,7 @@ const Occurrence* Symbols::at(FileId file, std::uint32_t offset) const {
            std::make_pair(file, offset);
   };
   auto found = std::partition_point(occurrences_.begin(), occurrences_.end(), behind);
-  // Names do not overlap, so the last one that begins there or before is the only one.
+  // Names do not overlap, so only the last one that begins at or before the offset can contain it.
   if (found == occurrences_.begin()) return nullptr;
   --found;
   const bool inside = found->span.file == file && offset <= found->span.end;

@@ -1,5 +1,5 @@
-// What every name in a program, its modules and its robot.json means, and where else it stands. Names are looked up as
-// analyze() does (sema/names.hpp); what is wrong with them is for analyze() to say.
+// The meaning of every name in a program, its modules and its robot.json, and where else it occurs. Names are resolved as
+// analyze() does (sema/names.hpp); analyze() reports mistakes in them.
 #pragma once
 
 #include <cstddef>
@@ -22,19 +22,20 @@ enum class SymbolKind : std::uint8_t {
 
 struct Symbol {
   SymbolKind kind{};
-  std::string name;  // as it is declared
-  // Where it is declared, or what brought it along: of a verb, an actuator that knows it. Nothing: it is part of RSL.
+  std::string name;  // as declared
+  // Its declaration, or the entry that it comes from: for a verb, an actuator that knows it. nullopt: it is part of RSL.
   std::optional<Span> declared;
-  bool is_there = true;  // the name itself stands at `declared`
-  // Of what robot.json declares: its place in the robot; of a channel, in its sensor.
+  bool is_there = true;  // the name itself is at `declared`
+  // For symbols from robot.json: `owner` is the index in the robot. For a channel, `owner` is the index of its sensor, and
+  // `place` the index in that sensor.
   std::size_t owner = 0, place = 0;
-  // Of a label: the name that it is one of. Of a name in a BEHAVIOR or DEFINE: that.
+  // For a label: the name that it belongs to. For a name in a BEHAVIOR or DEFINE: the name of that.
   std::string within{};
 };
 
 struct Occurrence {
   Span span;
-  std::size_t symbol = 0;  // its place in Symbols::all()
+  std::size_t symbol = 0;  // its index in Symbols::all()
   bool declares = false;
 };
 
@@ -43,9 +44,9 @@ public:
   explicit Symbols(const Project& project);
 
   [[nodiscard]] const std::vector<Symbol>& all() const { return symbols_; }
-  // In the order of the files and of their text.
+  // Ordered by file and by place in the text.
   [[nodiscard]] const std::vector<Occurrence>& occurrences() const { return occurrences_; }
-  // The name that the offset is in, or at whose end it is; nullptr: none.
+  // The name that contains the offset, or ends at it; nullptr: none.
   [[nodiscard]] const Occurrence* at(FileId file, std::uint32_t offset) const;
   [[nodiscard]] std::vector<Occurrence> of(std::size_t symbol) const;
 

@@ -22,7 +22,7 @@ std::vector<ColouredToken> coloured_tokens(const SourceMap& sources, FileId file
   std::vector<ColouredToken> result;
   Diagnostics ignored;
   for (const Token& token : lex(sources.file(file), file, ignored)) {
-    // A keyword may be a name where it stands; a label is a name of several words.
+    // Where a name is expected, a keyword may be one. A label is a name of several words.
     const Occurrence* const name = symbols.at(file, token.span.begin);
     const bool is_name = name != nullptr && name->span.begin <= token.span.begin &&
                          token.span.end <= name->span.end && token.kind != Kinds::STRING;

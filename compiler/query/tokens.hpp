@@ -1,4 +1,4 @@
-// The words of a text with what each means, for editors that colour by meaning; and what can be folded away.
+// The words of a text and their meanings, for semantic highlighting; and the blocks that can be folded.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ struct ColouredToken {
   bool declares = false;
 };
 
-// In the order of the text; words that mean nothing, operators and brackets are left out.
+// In the order of the text. Words without meaning, operators and brackets are left out.
 [[nodiscard]] std::vector<ColouredToken> coloured_tokens(const SourceMap& sources, FileId file,
                                                          const Symbols& symbols);
 
-// From the first to the last line of what takes several of them, from 1: blocks as their keywords tell them, in any text.
+// The first and the last line of a block of several lines, counting from 1. Blocks are found by their keywords, in any text.
 struct Fold {
   std::uint32_t first = 0, last = 0;
 };

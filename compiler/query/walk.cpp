@@ -1,4 +1,4 @@
-// Collector, part: over the trees.
+// The part of Collector that walks over the trees.
 #include "compiler/syntax/walk.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace robosync::compiler::query {
 namespace {
 
-// The expressions that an expression is made of.
+// Visits the direct parts of an expression.
 template <typename Node, typename Visit>
 void for_each_part(const Node& node, const Visit& visit) {
   if constexpr (requires { node.value; }) visit(node.value);
@@ -210,7 +210,7 @@ void Collector::stmt(const ast::Call& node) {
   for (const ast::Argument& argument : node.arguments) {
     const auto* amount = std::get_if<ast::Amount>(&argument.value);
     if (amount == nullptr || amount->value == nullptr) continue;
-    // Also the name of an actuator or of another DEFINE is an operand here.
+    // The name of an actuator or of another DEFINE is an operand here, too.
     const auto* operand = std::get_if<ast::Operand>(&amount->value->node);
     if (operand != nullptr && !operand->channel && define(operand->name)) continue;
     expr(amount->value);

@@ -1,5 +1,4 @@
-// A small layer above sema: names, units and commands are its business. May assume a program that
-// sema has found right.
+// A small layer on top of sema, which handles names, units and commands. Assumes a program that sema has accepted.
 #include "compiler/test_plan/plan.hpp"
 
 #include <algorithm>
@@ -15,9 +14,9 @@
 namespace robosync::compiler::test_plan {
 namespace {
 
-constexpr std::string_view kStopped = "stopped";  // in the place of a verb
+constexpr std::string_view kStopped = "stopped";  // in place of a verb
 
-// What an expectation must not ask of one moment.
+// True for operations that an expectation about a single moment cannot use.
 bool looks_back(const Expression& expression) {
   return has_time_word(expression) || expression.operation == Operation::random ||
          std::ranges::any_of(expression.operands, looks_back);
@@ -33,7 +32,7 @@ public:
         commands_(robot, names_, expressions_, motions_, diagnostics_) {
     ir::Program ignored;
     Variables(names_, expressions_, diagnostics_).declare(ignored);
-    diagnostics_ = {};  // whatever this said, sema has said before
+    diagnostics_ = {};  // sema has already reported all of this
   }
 
   void plan(const ast::Test& test, Span span, TestPlan& plan) {
@@ -73,7 +72,7 @@ private:
     return std::nullopt;
   }
 
-  // How long from now on; nothing after a mistake.
+  // The time at the end of a length from now; nullopt after a mistake.
   std::optional<Milliseconds> until(const ast::Expr& expr, const char* what) {
     const auto length = time(expr, what);
     if (!length) return std::nullopt;
@@ -187,7 +186,7 @@ private:
     return length ? until(*length, "WITHIN") : std::optional(now_);
   }
 
-  // A whole number that a step counts with.
+  // A whole number in a step, such as a count.
   std::optional<std::uint32_t> whole(
       const ast::Name& digits, std::uint32_t least,
       std::uint32_t most = std::numeric_limits<std::uint32_t>::max()) {
@@ -221,7 +220,7 @@ private:
       add_stop(node, span, end);
       return;
     }
-    // One for a group, or for each of its members.
+    // One command for a group, or one for each of its members.
     for (ir::Command& command : commands_.translate(node.command)) {
       if (command.word && find_place(command.word->name)) {
         diagnostics_.report(Code::E0409, "a TEST compares texts as they are said")
@@ -323,12 +322,12 @@ private:
   Diagnostics diagnostics_;
   Names names_;
   Expressions expressions_;
-  Diagnostics ignored_;  // what is said of MOTIONs, sema has said
+  Diagnostics ignored_;  // sema has already reported mistakes in MOTIONs
   Motions motions_;
   Commands commands_;
   TestPlan* plan_ = nullptr;
   PlannedTest test_;
-  Milliseconds now_ = 0;  // where time stands in the TEST
+  Milliseconds now_ = 0;  // the current time in the TEST
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// TEST blocks, checked and translated: what the sensors measure when, and what is expected then.
-// Names are those of robot.json; whoever runs a plan finds them in the program's image.
+// TEST blocks, checked and translated: which readings the sensors have at which times, and what is expected then. Names are those
+// of robot.json; the test runner looks them up in the program's image.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace robosync::compiler::test_plan {
 
 using Milliseconds = std::uint32_t;  // of program time; each TEST starts a new robot at 0
 
-// The longest TEST: an hour of the robot's time takes seconds of ours.
+// The longest TEST. An hour on the robot takes seconds to run.
 inline constexpr Milliseconds kLongestTest = 3'600'000;
 
 struct ChannelName {
@@ -29,22 +29,22 @@ struct PlannedReading {
   vm::Value value = 0;
 };
 
-// A command, matched by what is written of it: verb, word and parameters.
+// A command, matched by the parts that are written: verb, word and parameters.
 struct ExpectedCommand {
   bool no = false;
-  std::vector<std::string> actuators;  // every one of them; of NO, none
+  std::vector<std::string> actuators;  // all of them must get it; with NO: none of them may
   std::string verb;
-  std::optional<std::string> word;      // nothing: any
+  std::optional<std::string> word;      // nullopt: any
   std::vector<ir::Argument> arguments;  // only those that are written are compared
-  std::optional<std::uint32_t> times;   // exactly so often; else once or more
+  std::optional<std::uint32_t> times;   // exactly this often; nullopt: at least once
 };
-// What LOG or ALERT wrote. Where it goes on behind these words, that may be anything.
+// Text that LOG or ALERT wrote. Anything may follow these words.
 struct ExpectedText {
   bool no = false;
   bool alert = false;
   std::string text;
 };
-// They were halted by safety, stopped by STOP, or their commands were cancelled.
+// The actuators were halted by safety, stopped by STOP, or their commands were cancelled.
 struct ExpectedStop {
   bool no = false;
   std::vector<std::string> actuators;
@@ -56,7 +56,7 @@ struct ExpectedTruth {      // at the beginning or in some step of the window
 
 struct Expectation {
   Span span;
-  Milliseconds from = 0;  // the window, both ends included
+  Milliseconds from = 0;  // the window, including both ends
   Milliseconds until = 0;
   std::variant<ExpectedCommand, ExpectedText, ExpectedStop, ExpectedSilence, ExpectedTruth> what;
 };
@@ -66,8 +66,8 @@ struct PlannedTest {
   Span span;
   std::vector<PlannedReading> readings;
   std::vector<Expectation> expectations;
-  Milliseconds end = 0;               // nothing that is expected lies behind it
-  std::optional<std::uint32_t> seed;  // of what is drawn by chance; else the program's
+  Milliseconds end = 0;               // no expectation is later than this
+  std::optional<std::uint32_t> seed;  // of the random numbers; nullopt: the program's
 };
 
 struct TestPlan {
@@ -75,8 +75,8 @@ struct TestPlan {
   std::map<ChannelRef, ChannelName> channels;  // every channel that the tests name
 };
 
-// The TEST blocks of the program itself, which is the first of `trees`; it must be free of errors.
-// Tests with mistakes, which are reported, are left out.
+// The TEST blocks of the program itself, the first of `trees`, which must be free of errors. Tests with mistakes are reported and
+// left out.
 [[nodiscard]] TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler::test_plan
