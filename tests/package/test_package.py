@@ -1,5 +1,6 @@
 """The package of scripts/package, unpacked and used as after its installation, from an empty folder."""
 
+import gzip
 import os
 import subprocess
 import tempfile
@@ -50,7 +51,7 @@ class Package(unittest.TestCase):
         completed = self.run_it("bash", "-c", f". {self.root}/usr/share/bash-completion/completions/rsc; COMP_WORDS=(rsc upl); COMP_CWORD=1; "
                                 "_rsc; echo $COMPREPLY")
         self.assertEqual(completed, "upload\n")
-        self.assertIn(".SS rsc upload", (self.root / "usr/share/man/man1/rsc.1").read_text("utf-8"))
+        self.assertIn(".SS rsc upload", gzip.decompress((self.root / "usr/share/man/man1/rsc.1.gz").read_bytes()).decode())
 
 
 if __name__ == "__main__":
