@@ -1,9 +1,9 @@
-// Assertions of where the kernel's services are called from. On in builds with ROBOSYNC_ASSERTIONS:
-// on the host, and in the kernel's tests and its stress test on the board. In the firmware nothing
-// of them is left, not a byte.
+// Assertions about the context from which the kernel's services are called. Enabled by
+// ROBOSYNC_ASSERTIONS: on the host, and in the kernel's tests and its stress test on the board. In
+// the firmware they take no bytes.
 //
-// An assertion stands first in its service, before anything is changed. Mode and Held, which it
-// looks at, come from the port (port.hpp).
+// An assertion comes first in its service, before anything changes. It reads Mode and Held, which
+// the port defines (port.hpp).
 #pragma once
 
 #include "runtime-m4/port/port.hpp"
@@ -16,18 +16,18 @@ inline constexpr bool kAssertions = true;
 inline constexpr bool kAssertions = false;
 #endif
 
-// Called when one does not hold: `service` must not be called like that, and why. At first it is
-// port::panic, which ends everything. Tests put their own in its place; if that returns, the service
-// goes on.
+// Called when an assertion fails, with the service and the reason. The default is port::panic, which
+// halts everything. Tests set their own; if that returns, the service continues.
 using AssertionFailed = void (*)(const char* service, const char* why);
 extern AssertionFailed assertion_failed;
 
-// What a service expects of whoever calls it. Each takes the name of the function it stands in.
+// What a service expects of its caller. Each function takes the name of the service, by default that
+// of the function it is called in.
 class Expect {
 public:
   explicit constexpr Expect(const port::Machine& machine) : machine_(machine) {}
 
-  // [any]: but no interrupt above the kernel's level, which its locks do not hold off.
+  // [any], except interrupts above the kernel's level, which its locks do not hold off.
   void any(const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions)
       assert_that(machine_.may_call(), service, "from an interrupt above the kernel's level");
@@ -37,7 +37,7 @@ public:
     if constexpr (kAssertions)
       assert_that(machine_.mode() == port::Mode::init, service, "when threads run already");
   }
-  // [init, thread], and interrupts are not held off.
+  // [init, thread]; a thread must not hold interrupts off.
   void no_handler(const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions) {
       const port::Mode mode = machine_.mode();
@@ -46,26 +46,26 @@ public:
       assert_that(!locked, service, "while interrupts are held off");
     }
   }
-  // [thread], without any lock.
+  // [thread], holding no lock.
   void thread(const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions) {
       assert_that(machine_.mode() == port::Mode::thread, service, "not from a thread");
       assert_that(machine_.held() == port::Held::none, service, "while a lock is held");
     }
   }
-  // From the tick interrupt; where there are none, from whoever lets time pass.
+  // From the tick interrupt; on the host, from the code that advances time.
   void no_thread(const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions)
       assert_that(machine_.mode() != port::Mode::thread, service, "from a thread");
   }
-  // Inside of the kernel: no interrupt of its level comes in between.
+  // Inside the kernel: no interrupt of its level can come in between.
   void locked(const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions) {
       const bool locked = machine_.held() == port::Held::lock;
       assert_that(locked || machine_.mode() == port::Mode::handler, service, "without a lock");
     }
   }
-  // `holds` is worked out in the firmware, too: no more than a comparison of members.
+  // The firmware evaluates `holds` too, so it should be no more than a comparison of members.
   void that(bool holds, const char* why, const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions) assert_that(holds, service, why);
   }

@@ -1,25 +1,26 @@
-// System calls, as a thread without privileges makes them. The list: calls.def. What they do:
-// Kernel::answer(). How they get there: port::call().
+// The system calls, for unprivileged threads. calls.def lists them, port::call() makes them, and
+// Kernel::answer() handles them.
 //
-// Nothing here touches the kernel's memory, which such a thread has no access to.
+// Nothing here touches the kernel's memory, which an unprivileged thread cannot access.
 #pragma once
 
 #include "runtime-m4/kernel/kernel.hpp"
 
 namespace robosync::kernel::calls {
 
-// As Kernel::wait(mask).  [a thread without privileges]
+// Like Kernel::wait(mask).  [unprivileged thread]
 inline Events wait(Kernel& kernel, Events mask) {
   return port::call(kernel, static_cast<std::uint32_t>(Call::wait), mask);
 }
 
-// Says that it has done what it was woken for.  [a thread without privileges]
+// Reports that the thread has done the work it was woken for.  [unprivileged thread]
 inline void report(Kernel& kernel) {
   port::call(kernel, static_cast<std::uint32_t>(Call::report), 0);
 }
 
-// Says that it has done what it was woken for, and waits to be woken again: for a thread that knows
-// by itself what for, and is not signalled before it has said so.  [a thread without privileges]
+// Reports that the work is done, and blocks until the thread is woken again. For a thread that does
+// not need to know which event woke it, and is not signalled before it reports.
+// [unprivileged thread]
 inline void rest(Kernel& kernel, Events mask) {
   port::call(kernel, static_cast<std::uint32_t>(Call::rest), mask);
 }

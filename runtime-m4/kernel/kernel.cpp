@@ -1,9 +1,9 @@
-// Waiting, waking and time: the paths that are in a hurry. bench/ counts their instructions.
+// Waiting, waking and time: the time-critical paths. bench/ counts their instructions.
 //
 // A thread's bit in the ready set and its events change under a Lock only, so that interrupts see
-// them whole; the one exception is Thread::take(), which is atomic by itself. Timers are no
-// business of interrupts: the queue is changed by the tick, which nothing but they can preempt, and
-// by threads under a SwitchLock, which they come through. So a Lock is held for a few instructions
+// them consistent; the one exception is Thread::take(), which is atomic. Interrupts do not use the
+// timers. The tick changes the queue, and only interrupts can preempt it; threads change the queue
+// under a SwitchLock, which does not hold interrupts off. So a Lock is held for a few instructions
 // only. Every path is bounded: the longest is wake_due() when all threads are due at one tick.
 #include "runtime-m4/kernel/kernel.hpp"
 
@@ -13,7 +13,7 @@ namespace robosync::kernel {
 
 namespace {
 
-// Microseconds, and room to round up to a tick; wait() sleeps again after it.
+// In microseconds, with room to round up to a tick. A longer wait sleeps several times.
 constexpr std::uint32_t kLongestSleep = UINT32_MAX - static_cast<std::uint32_t>(kTick);
 
 }  // namespace
@@ -31,18 +31,18 @@ Events Kernel::wait_for(Events mask) {
   {
     port::Lock lock(machine_);
     if ((self.events_ & mask) == 0) block(self, mask);
-  }  // here the switch happens, and here the thread goes on when it was woken
+  }  // the switch happens here, and the woken thread continues here
   const Events taken = self.take(mask);
-  // Nothing wakes it but an event, so this is for a machine that switches late.
+  // Only an event wakes the thread, so this is for a machine that switches late.
   if (taken == 0) [[unlikely]]
     return wait_until(mask, kForever);
   return taken;
 }
 
-// True when the deadline will be reached as soon as the timer is not armed any more: it is armed for
-// all of the time, or not at all, because the deadline is reached already. To arm and to block are
-// one to the tick, which would else make ready what is about to block, for nothing; an interrupt
-// that signals in between is seen by the look under the lock.
+// True if the deadline is reached once the timer is no longer armed: the timer covers all of the
+// remaining time, or is not armed because the deadline has passed. The SwitchLock keeps the tick out
+// between arming and blocking; a tick there would make the thread ready before it blocks, and the
+// thread would then block for ever. The check under the Lock sees an interrupt that signals in between.
 inline bool Kernel::block_until(Thread& thread, Events mask, Time deadline) {
   port::SwitchLock still(machine_);
   if (thread.armed()) TimerQueue::disarm(thread);
@@ -55,8 +55,9 @@ inline bool Kernel::block_until(Thread& thread, Events mask, Time deadline) {
   return deadline - present <= kLongestSleep;
 }
 
-// The timer of a thread that an event has woken stays armed until the thread waits again: to take it back is on nobody's
-// way to what the event is about. It can do no harm meanwhile: it would make this thread ready, which it is.
+// The timer of a thread that an event has woken stays armed until the thread waits again, so that
+// cancelling it does not delay the response to the event. It is harmless meanwhile: if it expires, it
+// makes this thread ready, which it is already.
 Events Kernel::wait_until(Events mask, Time deadline) {
   Thread& self = *running_;
   while (true) {
@@ -83,7 +84,7 @@ void Kernel::disarm(Thread& thread) {
   if (thread.armed()) TimerQueue::disarm(thread);
 }
 
-// Under a SwitchLock: for so many microseconds, rounded up to a tick.
+// `sleep` is in microseconds, rounded up to a tick. Under a SwitchLock.
 void Kernel::arm(Thread& thread, std::uint32_t sleep) {
   constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
   const std::uint32_t ticks = (sleep + kTickLength - 1) / kTickLength;
@@ -99,8 +100,7 @@ void Kernel::block(Thread& thread, Events mask) {
   machine_.request_switch();
 }
 
-// The switch waits for the end of the lock. To ask for it first leaves the compiler enough
-// registers.
+// The switch waits for the end of the Lock. Requesting it first leaves the compiler enough registers.
 void Kernel::make_ready(Thread& thread) {
   expect().locked();
   if (thread.rank_ < running_rank_) [[likely]]
@@ -108,7 +108,7 @@ void Kernel::make_ready(Thread& thread) {
   ReadySet::insert(thread.ready_position_);
 }
 
-// Under a Lock, so that no tick is under way.
+// Under a Lock, so that no tick is in progress.
 void Kernel::make_unready(Thread& thread) {
   if (thread.armed()) TimerQueue::disarm(thread);
   release_all(thread);
@@ -142,7 +142,7 @@ void Kernel::report() {
   if (watcher_ != nullptr) signal(*watcher_, report_events_);
 }
 
-// Interrupts are held off.
+// Called with interrupts held off.
 void Kernel::rest(Events mask) {
   running_->events_ &= ~mask;
   report();
@@ -154,7 +154,7 @@ void Kernel::wake_due() {
     Timer* due = timers_.collect();
     while (due != nullptr) {
       auto& thread = static_cast<Thread&>(TimerQueue::take_first(due));
-      port::OnlyLock lock(machine_);  // of its own, so that interrupts come in between
+      port::OnlyLock lock(machine_);  // one per thread, so that interrupts are taken in between
       make_ready(thread);
     }
   } while (timers_.has_work(tick_));

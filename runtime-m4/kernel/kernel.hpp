@@ -3,8 +3,8 @@
 //
 // Legal context of each function: [thread] from a running thread, [any] from a thread or an
 // interrupt handler, [init] before run(). Builds for tests assert it (assertions.hpp). Nothing here
-// allocates; threads and their stacks belong to the caller. Policy: scheduler.hpp. Time: timer_queue.hpp. Context switch:
-// port/cortex-m4/switch.S. Read docs/kernel.md first.
+// allocates; threads and their stacks belong to the caller. Policy: scheduler.hpp. Time:
+// timer_queue.hpp. Context switch: port/cortex-m4/switch.S. Read docs/kernel.md first.
 #pragma once
 
 #include <array>
@@ -29,17 +29,17 @@ enum class Call : std::uint32_t {
 #undef CALL
 };
 
-// What the context switch goes by. The Cortex-M4's reads it at once, so switch.S knows where what stands
-// (machine.cpp holds it to that).
+// What the context switch reads. switch.S loads it in one go and relies on this layout; machine.cpp
+// asserts the offsets.
 struct Selection {
   Thread* running_ = nullptr;
   [[no_unique_address]] port::RunClock run_clock_;
-  Mutex* held_ = nullptr;  // the latest of those that are held
+  Mutex* held_ = nullptr;  // the latest of the held mutexes
   ReadySet ready_;
-  // The ceiling of what the running thread holds, else its rank; Kernel's kNoneRuns from the moment
+  // The ceiling if the running thread holds a mutex, else its rank; Kernel::kNoneRuns from the moment
   // it blocks.
   std::uint8_t running_rank_ = kIdleRank;
-  std::uint8_t ceiling_ = kIdleRank;  // the highest of the ceilings of what is held
+  std::uint8_t ceiling_ = kIdleRank;  // the highest ceiling of the held mutexes
   std::uint8_t count_ = 0;
   std::array<Thread*, kMaxThreads + 1> by_rank_{};  // the last is idle
 };
@@ -50,34 +50,37 @@ public:
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  // Adds a thread; it is ready at once. The Thread and its stack must outlive it. To let none of a
-  // batch run before all are there, hold lock(). False, and nothing changed, when kMaxThreads are
-  // there, the thread is already in, or the spec has no entry or too small a stack.  [init, thread]
+  // Adds a thread, which is ready immediately. The Thread and its stack must outlive it. Hold lock()
+  // to add several threads before any of them runs. Returns false and changes nothing if there are
+  // kMaxThreads threads, the thread has been added already, or the spec is invalid: no entry, a
+  // priority out of range, or a stack of the wrong size or alignment.  [init, thread]
   [[nodiscard]] bool add(Thread& thread, const ThreadSpec& spec);
-  // Takes a thread out, whatever it waits for; it may be added again. Not the calling thread.
-  // [init, thread]
+  // Removes a thread, in any state; it may be added again. Not the calling thread.  [init, thread]
   void remove(Thread& thread);
 
-  // Runs the threads. Returns only on the host, when nothing is left to happen.  [init]
+  // Runs the threads. Returns only on the host, when all threads are blocked without a deadline.
+  // [init]
   void run() {
     expect().init();
     machine_.run();
   }
 
   Time now() const;  // [any]
-  // The same under lock(). In two multiplications, where one of 64 bits takes three times as long.
+  // Like now(), but only under lock(). Two 32-bit multiplications: one of 64 bits takes three times
+  // as long.
   Time time() const {
     constexpr auto kTickLength = static_cast<std::uint32_t>(kTick);
     const std::uint32_t upper = eras_ * kTickLength;
     return Time{tick_} * kTickLength + (Time{upper} << 32U);
   }
-  // The ticks of it, of which the upper ones are lost: for differences.  [any]
+  // Ticks since start-up, modulo 2^32: for differences.  [any]
   std::uint32_t tick() const { return tick_; }
-  // Who runs, or was interrupted.  [any]
+  // The running thread, or the one that an interrupt preempted.  [any]
   Thread& current() { return *running_; }
 
-  // Blocks until one of `mask` is signalled or `deadline` is reached. Returns the events that were
-  // there, and clears them; 0 after the deadline. A deadline in the past only looks.  [thread]
+  // Blocks until an event of `mask` is signalled or `deadline` is reached. Takes the signalled events
+  // of `mask` and returns them; 0 after the deadline. With a deadline in the past it never blocks.
+  // [thread]
   Events wait(Events mask, Time deadline = kForever) {
     expect_may_block();
     return deadline == kForever ? wait_for(mask) : wait_until(mask, deadline);
@@ -87,42 +90,42 @@ public:
     expect_may_block();
     wait_until(0, deadline);
   }
-  // Sets events of a thread and lets it run if it waits for one of them.  [any]
+  // Signals events of a thread, and makes it ready if it waits for one of them.  [any]
   void signal(Thread& thread, Events events);
-  // The same, and waits: whoever that lets run finds this thread blocked, unless one of `mask` is there.  [thread]
+  // signal() and wait() in one call. A thread that this wakes runs only after the calling thread has
+  // blocked, unless an event of `mask` is signalled already.  [thread]
   Events signal_and_wait(Thread& thread, Events events, Events mask, Time deadline);
-  // Gives a thread another priority: its place is then the one it would have if it were added now,
-  // behind its equals. The order changes by pairs of neighbours, each under a lock of its own, so
-  // nothing is held off for longer however far the thread moves. One caller at a time, and not
-  // during add() or remove().  [init, thread]
+  // Changes a thread's priority. It moves to the rank it would get if it were added now: behind its
+  // equals. Neighbours are exchanged pair by pair, each under its own lock, so the time for which
+  // interrupts are held off does not depend on how far the thread moves. One caller at a time, and
+  // not during add() or remove().  [init, thread]
   void set_priority(Thread& thread, Priority priority);
-  // Stops a thread for good (fault, or its entry returned); it is never run again. From a handler
-  // only the running thread, and not one that holds a SwitchLock: the timers would be in the midst
-  // of a change.  [thread; handlers of a thread's own faults and calls]
+  // Stops a thread (it faulted, or its entry returned); it does not run again until it is removed and
+  // added. A handler may stop only the running thread, and only if that holds no SwitchLock: a change
+  // of the timers might be half done.  [thread; handlers of a thread's own faults and calls]
   [[gnu::cold]] void stop(Thread& thread);
-  // From now on `stops` of `watcher` are signalled whenever a thread is stopped, and `reports`
-  // whenever one without privileges makes the call `report`.  [init, thread]
+  // From now on, signals `stops` to `watcher` whenever a thread is stopped, and `reports` whenever an
+  // unprivileged thread makes the system call `report`.  [init, thread]
   void watch(Thread& watcher, Events stops, Events reports);
 
-  // From now on threads without privileges may read and write what `areas` says, besides their own
-  // stacks. The host has no such borders.  [init, thread]
+  // Lets unprivileged threads read and write `areas`, besides their own stacks. The host does not
+  // restrict access.  [init, thread]
   void grant(const port::Areas& areas);
 
-  // While it is held no other thread runs, and time stands still; interrupts come in. Hold it for a
-  // few hundred instructions at most; blocking under it is an error.  [any]
+  // While it is held, no other thread runs and the tick does not advance; interrupts are still taken.
+  // Hold it for a few hundred instructions at most; blocking under it is an error.  [any]
   [[nodiscard]] port::SwitchLock lock() {
     expect().any();
     return port::SwitchLock(machine_);
   }
-  // The same, and no interrupt of the kernel's level is taken either: for what interrupts change,
-  // too. Hold it for a few instructions.  [any]
+  // Like lock(), but also holds off interrupts of the kernel's level: for data that interrupts
+  // change. Hold it for a few instructions.  [any]
   [[nodiscard]] port::Lock lock_interrupts() {
     expect().any();
     return port::Lock(machine_);
   }
 
-  // Takes a mutex, without ever waiting for it, and gives it back (mutex.hpp; MutexGuard does
-  // both).  [thread]
+  // Takes a mutex, which never blocks, and releases it (mutex.hpp; MutexGuard does both).  [thread]
   [[gnu::always_inline]] void acquire(Mutex& mutex) {
     expect().thread();
     if (held_ != nullptr) [[unlikely]]
@@ -146,27 +149,28 @@ public:
       machine_.request_switch();
   }
 
-  // All threads, by rank.  [any; the span is good until threads are added or removed]
+  // All threads, by rank.  [any; the span is valid until threads are added or removed]
   std::span<Thread* const> threads() const { return {by_rank_.data(), count_}; }
   Thread::State state(const Thread& thread) const;  // [any]
 
   // A free-running counter of the processor's clock; wraps.  [any]
   std::uint32_t clock() const { return 0 - port::Machine::clock(); }
-  // Counts of it that a thread ran since it was added, interrupts meanwhile included; wraps. Always
-  // 0 where time does not flow.  [any]
+  // Counts of clock() for which a thread has run since it was added, including interrupts during that
+  // time; wraps. Always 0 if port::kTimeFlows is false.  [any]
   std::uint32_t run_time(const Thread& thread) const;
 
   // --- for the port ---
 
-  // The tick interrupt: so many ticks have passed, be it none; wakes who is due. Nothing preempts
-  // it but interrupts of the kernel's level and above, and it preempts no switch.
+  // For the tick interrupt: `ticks` ticks have passed (possibly 0); wakes the threads that are due.
+  // Only interrupts of the kernel's level and above preempt it, and it preempts no switch.
   void on_tick(std::uint32_t ticks) {
     expect().no_thread();
     pass(ticks);
     if (timers_.has_work(tick_)) wake_due();
   }
-  // The same without waking anybody: on_tick() must follow before a thread runs. One word changes,
-  // so that an interrupt which asks for the time finds it right; two change under a lock.
+  // Like on_tick(), but wakes no thread: on_tick() must follow before a thread runs. Usually one word
+  // changes, so an interrupt that reads the time finds it consistent; begin_era() changes two, under
+  // a lock.
   void pass(std::uint32_t ticks) {
     const std::uint32_t next = tick_ + ticks;
     if (next < ticks) [[unlikely]]
@@ -175,13 +179,13 @@ public:
   }
   // Ticks until on_tick() may have to wake a thread, at least 1; 0 when no thread sleeps.
   std::uint32_t ticks_to_next_wake() const;
-  // … whether one sleeps or not: found at once, and perhaps for nothing.
+  // Like ticks_to_next_wake(), but in constant time: not 0 when no thread sleeps.
   std::uint32_t ticks_to_next_work() const { return timers_.next_work() - tick_; }
 
-  // The context switch: takes the highest ready thread as the running one, unless the holder of a
-  // mutex stands at its ceiling. Interrupts may come in between: after `ready_` is read they
-  // compare with a rank that is not above the one found, so none they make ready is overlooked.
-  // (The Cortex-M4 does the same in registers: switch.S.)
+  // For the context switch: makes the highest ready thread the running one, unless the holder of a
+  // mutex has at least that rank by its ceiling. Interrupts may come in between: after `ready_` is
+  // read, they compare with a running_rank_ that is not above the one found, so no thread that they
+  // make ready is overlooked. (The Cortex-M4 does the same in registers: switch.S.)
   Thread& select_next() {
     const unsigned rank = ready_.first();
     std::atomic_signal_fence(std::memory_order_seq_cst);
@@ -195,7 +199,7 @@ public:
     return *running_;
   }
 
-  // Does what a thread without privileges asks for: a system call of calls.def.
+  // Handles a system call of an unprivileged thread (calls.def).
   void answer(port::CallFrame& call) {
     const auto what = static_cast<Call>(call.number());
     if (what == Call::wait) [[likely]]
@@ -211,7 +215,7 @@ public:
   static port::Context& context(Thread& thread) { return thread; }
 
 private:
-  static constexpr std::uint8_t kNoneRuns = 0xFF;  // ranks below everything: any wake-up switches
+  static constexpr std::uint8_t kNoneRuns = 0xFF;  // below every rank: any wake-up switches
 
   Expect expect() const { return Expect(machine_); }
   void expect_may_block(const char* service = __builtin_FUNCTION()) const {
@@ -258,8 +262,8 @@ private:
   void move_highest(const Thread& sunk, const Thread& risen);
 
   std::array<std::uint8_t, kCategories> highest_of_;  // rank of the highest thread of each category
-  std::uint32_t tick_ = 0;                            // wraps …
-  std::uint32_t eras_ = 0;                            // … and so often it did
+  std::uint32_t tick_ = 0;                            // wraps
+  std::uint32_t eras_ = 0;                            // how often tick_ has wrapped
   TimerQueue timers_;
   Thread* watcher_ = nullptr;
   Events stop_events_ = 0;
@@ -268,7 +272,7 @@ private:
   [[no_unique_address]] port::Machine machine_;
 };
 
-// Its interrupts are held off. A thread that was woken takes its events by making the call again.
+// Called with interrupts held off. A woken thread takes its events by making the call again.
 inline void Kernel::take_or_block(port::CallFrame& call) {
   Thread& self = *running_;
   const Events mask = call.argument();

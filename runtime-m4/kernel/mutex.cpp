@@ -1,9 +1,9 @@
-// Mutexes: see mutex.hpp. All that are held, by whomever, are linked from `held_`, the latest
-// first; `ceiling_` is the highest of their ceilings, and what select_next() compares with.
+// Mutexes: see mutex.hpp. All held mutexes of all threads are one list from `held_`, the latest first.
+// `ceiling_` is the highest of their ceilings; select_next() compares with it.
 //
-// The rank at which a thread runs is running_rank_. So to take a mutex is to lower that number, and
-// a wake-up that is not above it asks for no switch. Here is what happens when several are held;
-// one by itself is taken and given back in kernel.hpp. Bounded: loops go over what is held.
+// A thread runs at running_rank_. Taking a mutex lowers that number, and a wake-up that is not above
+// it requests no switch. This file handles several held mutexes; kernel.hpp takes and releases a
+// single one. Bounded: loops go over the held mutexes.
 #include "runtime-m4/kernel/mutex.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void Kernel::release_one(Mutex& mutex) {
   machine_.request_switch();  // at worst to itself
 }
 
-// When it will not give back what it holds.
+// For a thread that is stopped or removed.
 void Kernel::release_all(const Thread& thread) {
   for (Mutex** link = &held_; *link != nullptr;) {
     if ((*link)->owner_ == &thread) {
@@ -53,7 +53,8 @@ std::uint8_t Kernel::find_ceiling() const {
   return ceiling;
 }
 
-// The running thread holds something if it holds the latest: who comes after it gives back first.
+// The running thread holds a mutex only if it holds the latest one: a thread that preempts a holder
+// releases its own mutexes before the holder runs again.
 std::uint8_t Kernel::rank_of_running() const {
   return held_ != nullptr && held_->owner_ == running_ ? ceiling_ : running_->rank_;
 }

@@ -1,16 +1,16 @@
-// A mutex for threads that share what takes long to use, as a bus; for a few words, Kernel::lock()
-// is cheaper. Immediate priority ceiling: whoever holds it runs at the rank of the highest thread
-// that may ever want it (the ceiling).
+// A mutex for resources that take long to use, such as a bus. For a few words, Kernel::lock() is
+// cheaper. Immediate priority ceiling: the holder runs at the rank of the highest thread that may
+// ever want the mutex (the ceiling).
 //
-// So a thread never waits for a mutex: while one is held, no thread that may want it is run; when
-// such a thread runs, the mutex is free. There is no queue of waiters, no inheritance, no deadlock,
-// and a thread is held up by one holder at most, before it starts.
+// So a thread never waits for a mutex: while one is held, no other thread that may want it runs; when
+// such a thread runs, the mutex is free. There is no queue of waiters, no inheritance and no
+// deadlock. A thread is delayed by at most one holder, before it starts.
 //
-// The users are the threads of a category, and any that rank below the highest of these; so the
+// The users are the threads of a category, and any that rank below the highest of these. So the
 // ceiling is known when a program is loaded, and stays right when threads change their ranks. A
-// thread above the ceiling that comes upon a mutex which is held is stopped. The holder must not
-// wait or sleep. It may hold several, and release them in any order. When it is stopped (a fault)
-// or removed, what it held is free.
+// thread above the ceiling that tries to take a held mutex is stopped. The holder must not wait or
+// sleep. It may hold several mutexes, and release them in any order. They are released for it when it
+// is stopped (a fault) or removed.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ public:
 private:
   friend class Kernel;
 
-  // Takes what `link` points at out of those that are held.
+  // Removes the mutex that `link` points at from the list of held mutexes.
   static void take_out(Mutex*& link) {
     Mutex& mutex = *link;
     mutex.owner_ = nullptr;
@@ -46,12 +46,12 @@ private:
   }
 
   Thread* owner_ = nullptr;
-  Mutex* below_ = nullptr;  // what was held already when this one was taken
+  Mutex* below_ = nullptr;  // the latest mutex that was held when this one was taken
   Category highest_;
-  bool not_alone_ = false;  // something else is held, or was, since it was taken
+  bool not_alone_ = false;  // another mutex is held, or has been since this one was taken
 };
 
-// Holds a mutex as long as it lives.  [thread]
+// Holds a mutex for its own lifetime.  [thread]
 class MutexGuard {
 public:
   MutexGuard(Kernel& kernel, Mutex& mutex);

@@ -1,7 +1,7 @@
-// The order of the threads, kept: ranks when a thread comes or goes, and when its priority changes.
-// All of it is done by exchanges of neighbours, each under a Lock of its own, so that interrupts
-// are held off for the length of one: a thread comes in at the bottom, and goes from there. Who
-// outranks whom: scheduler.hpp. The choice of who runs is Kernel::select_next().
+// Keeps the order of the threads: updates ranks when a thread is added or removed, or its priority
+// changes. A thread is added at the bottom and removed from there, and moves by exchanges of
+// neighbours. Each exchange has its own Lock, so interrupts are held off for one exchange only.
+// Which thread outranks which: scheduler.hpp. Kernel::select_next() chooses the thread that runs.
 #include "runtime-m4/kernel/scheduler.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace robosync::kernel {
 
-// The thread becomes the lowest of all. Under a Lock.
+// Adds the thread at the lowest rank. Under a Lock.
 void Kernel::enter(Thread& thread) {
   expect().locked();
   by_rank_[count_] = &thread;
@@ -21,7 +21,7 @@ void Kernel::enter(Thread& thread) {
   follow_highest();
 }
 
-// The lowest of all goes; it is not ready. Under a Lock.
+// Removes the lowest thread, which must not be ready. Under a Lock.
 void Kernel::leave(const Thread& thread) {
   expect().locked();
   --count_;
@@ -60,7 +60,7 @@ void Kernel::set_priority(Thread& thread, Priority priority) {
   }
 }
 
-// The threads at `rank` and below it change places. Interrupts are held off for this one exchange.
+// Exchanges the thread at `rank` with the next lower one. Interrupts are held off meanwhile.
 void Kernel::swap_with_next(unsigned rank) {
   port::Lock lock(machine_);
   Thread& sinks = *by_rank_[rank];
@@ -78,13 +78,13 @@ void Kernel::swap_with_next(unsigned rank) {
   if (running_ == &rises) follow_running();
   if (running_ == &sinks) {
     follow_running();
-    // The other's turn, if it can run; or that of who holds a mutex whose ceiling this was.
+    // Now the other thread runs, if it is ready, or the holder of a mutex whose ceiling this was.
     if (rising_ready || held_ != nullptr) machine_.request_switch();
   }
 }
 
-// Two of different categories have changed places: the highest of one may now stand a place lower,
-// that of the other a place higher, and so may a ceiling.
+// After an exchange of threads of different categories: the highest rank of one category may be one
+// lower now, that of the other one higher. Ceilings follow these ranks.
 void Kernel::move_highest(const Thread& sunk, const Thread& risen) {
   std::uint8_t& upper = highest_of_[index(sunk.category())];
   if (upper == risen.rank_) upper = sunk.rank_;
@@ -93,8 +93,8 @@ void Kernel::move_highest(const Thread& sunk, const Thread& risen) {
   follow_highest();
 }
 
-// After a change of the highest of a category: so may the ceiling have changed, and with it the
-// rank of who runs.
+// After the highest rank of a category changed: the ceiling may have changed too, and with it the
+// rank of the running thread.
 void Kernel::follow_highest() {
   if (held_ == nullptr) return;
   ceiling_ = find_ceiling();

@@ -1,5 +1,5 @@
-// Which ready thread runs. No machine, no state but the ready set. Every thread has a rank of its own, so there are no ties, no lists, and
-// "who runs next" is two CLZ however many threads there are.
+// Which ready thread runs. Pure: depends on no machine, and the ready set is its only state. Every thread has a rank of its own,
+// so there are no ties and no lists. Finding the next thread costs a test per word and one CLZ, however many threads are ready.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace robosync::kernel {
 using policy::kMaxThreads;
 inline constexpr std::uint8_t kIdleRank = kMaxThreads;  // what an empty ready set selects
 
-// Who outranks whom is policy (policy/standing.hpp); here it is kept and obeyed.
+// Which thread outranks which is policy (policy/standing.hpp); the kernel keeps and obeys it.
 using policy::Category;
 using policy::category_of;
 using policy::kBelowAll;
@@ -25,13 +25,13 @@ using policy::Standing;
 using policy::standing;
 using policy::with_priority;
 
-// The threads that can run: one bit each by rank, the highest rank in the top bit of the first
-// word, so that one thread's bit is one load, one OR, one store. The words are looked at in turn, which
-// costs the selection two instructions a word and nothing else.
+// The ready threads: one bit per rank, the highest rank in the top bit of the first word. Setting a
+// bit takes one load, one OR and one store. The words are checked in turn, which costs the selection
+// two instructions a word and adds nothing to a wake-up.
 template <unsigned kWords>
 class BasicReadySet {
 public:
-  // Where a rank's bit stands. Good as long as the set.
+  // The place of a rank's bit. Valid as long as the set exists.
   struct Position {
     std::uint32_t* word = nullptr;
     std::uint32_t bit = 0;
@@ -42,7 +42,7 @@ public:
   }
   static constexpr void insert(Position position) { *position.word |= position.bit; }
   static constexpr void erase(Position position) { *position.word &= ~position.bit; }
-  // Two positions change what is there. True if `b` was in the set.
+  // Swaps the bits at two positions. True if `b` was in the set.
   static constexpr bool exchange(Position a, Position b) {
     const std::uint32_t in_a = *a.word & a.bit;
     const std::uint32_t in_b = *b.word & b.bit;
@@ -55,7 +55,7 @@ public:
   }
   static constexpr bool contains(Position position) { return (*position.word & position.bit) != 0; }
 
-  // Highest rank in the set; the number of ranks when it is empty.
+  // The highest rank in the set; the number of ranks if it is empty.
   [[gnu::always_inline]] constexpr unsigned first() const { return first_from<0>(); }
 
 private:

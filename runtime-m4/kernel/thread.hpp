@@ -1,4 +1,4 @@
-// A thread: what is needed to create one, and what the kernel keeps of it (its control block).
+// A thread: the specification it is created from, and its control block.
 #pragma once
 
 #include <cstddef>
@@ -21,23 +21,23 @@ struct ThreadSpec {
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
   std::span<std::byte> stack;  // alignas(port::kStackAlignment), at least port::kMinStack
-  // Without privileges it has its stack and what Kernel::grant() gives, and the system calls of
-  // calls.def. Its stack: alignas(port::kUnprivilegedStackAlignment), a multiple of that, at most
-  // port::kMaxUnprivilegedStack bytes.
+  // An unprivileged thread can access its stack and what Kernel::grant() gives, and make the system
+  // calls of calls.def. Its stack: alignas(port::kUnprivilegedStackAlignment), a multiple of that,
+  // at most port::kMaxUnprivilegedStack bytes.
   bool privileged = true;
-  // Not 0: of the stack, the first so many bytes are data of the thread, which is without privileges;
-  // and besides the stack it has nothing, not even what Kernel::grant() gives. The stack is then of
-  // port::kSecludedStack bytes and aligned to that.
+  // If not 0, this many bytes at the start of the stack are the thread's data. The thread must be
+  // unprivileged, and can access its stack only, not even what Kernel::grant() gives. The stack then
+  // has port::kSecludedStack bytes and is aligned to that.
   std::uint16_t data_bytes = 0;
 };
 
-// Unused stack is filled with this, to see later how deep it was used.
+// Fills unused stack, so that stack_used() can tell later how much of it was used.
 inline constexpr std::byte kPaint{0xA5};
 
-// The context stands first: the switch finds it where the thread is.
+// The context comes first: switch.S takes a thread's address as that of its context.
 class Thread : private port::Context, private Timer {
 public:
-  // How it stands; the numbers are link::ThreadInfo::state.
+  // The numbers are those of link::ThreadInfo::state.
   enum class State : std::uint8_t { blocked, ready, stopped, absent };
 
   Thread() = default;
@@ -48,20 +48,20 @@ public:
   Category category() const { return category_of(standing_); }
   Priority priority() const { return priority_of(standing_); }
   std::uint8_t rank() const { return rank_; }                 // 0 is the highest
-  std::uint32_t activations() const { return activations_; }  // times it went to wait
-  // Deadlines it missed, as it says itself; 255: that many or more.
+  std::uint32_t activations() const { return activations_; }  // times it blocked
+  // Deadlines it missed, as it reports them itself; saturates at 255.
   std::uint8_t missed() const { return missed_; }
   void note_miss() {
     if (missed_ != 0xFF) ++missed_;
   }
-  // What it can use of its stack.
+  // The usable part of its stack.
   std::span<std::byte> stack() const { return {stack_, stack_bytes_}; }
   std::size_t stack_used() const;  // most bytes in use since it was added
 
 private:
   friend class Kernel;
 
-  void set_stack(std::span<std::byte> stack);  // and paints it
+  void set_stack(std::span<std::byte> stack);  // also paints it
   void set_standing(Standing standing) {
     standing_ = standing & ((Standing{1} << kStandingBits) - 1);
   }
@@ -70,7 +70,7 @@ private:
     ready_position_ = ready.position(rank);
   }
 
-  // Takes those of `mask` that are there. [the thread itself]
+  // Takes the signalled events of `mask`. [the thread itself]
   Events take(Events mask) { return port::fetch_and_clear(events_, mask) & mask; }
 
   ReadySet::Position ready_position_;
@@ -82,9 +82,9 @@ private:
   std::uint16_t stack_bytes_ = 0;
   std::uint8_t rank_ = kIdleRank;
   std::uint8_t missed_ = 0;
-  // Both change under a Lock only, as they share a word.
+  // Both change under a Lock only, because they share a word.
   Standing standing_ : kStandingBits = 0;
-  State state_ : 8 = State::absent;  // or stopped; else the ready set says whether it is blocked
+  State state_ : 8 = State::absent;  // never blocked: the ready set tells ready from blocked
 };
 
 }  // namespace robosync::kernel

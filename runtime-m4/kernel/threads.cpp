@@ -1,5 +1,5 @@
-// Which threads there are: creation and removal. Bounded: a change moves at most kMaxThreads
-// places. Built for size; what is in a hurry stands in kernel.cpp.
+// Adding and removing threads. Bounded: a thread moves by at most kMaxThreads ranks. Built for size;
+// the time-critical services are in kernel.cpp.
 #include <algorithm>
 
 #include "runtime-m4/kernel/kernel.hpp"

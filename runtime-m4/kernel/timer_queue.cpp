@@ -1,4 +1,4 @@
-// What happens seldom: built for size. The rest stands in the header.
+// The rare paths, built for size. The frequent ones are in the header.
 #include "runtime-m4/kernel/timer_queue.hpp"
 
 #include <bit>
@@ -15,7 +15,7 @@ void insert(Timer*& list, Timer& timer) {
   list = &timer;
 }
 
-// Ticks of one bucket of a wheel; of the one behind the last, how far that reaches.
+// Ticks of one bucket of a wheel. width(kWheels) is how far the last wheel reaches.
 constexpr std::uint32_t width(unsigned wheel) {
   return 1U << (wheel * TimerQueue::kDigitBits);
 }
@@ -42,8 +42,8 @@ void TimerQueue::note_move(std::uint32_t tick, std::uint32_t now) {
   if (tick - now < next_work_ - now) next_work_ = tick;
 }
 
-// Once in 32 ticks at most; once in 32,768 at least, be it for nothing. What is due at once comes into
-// the bucket that is collected next.
+// Runs at most every 32 ticks and at least every 32,768, even if there is nothing to move. Timers due
+// now get into the bucket that collect() empties next.
 void TimerQueue::move_down(std::uint32_t now) {
   next_move_ = (now | (width(kWheels) - 1)) + 1;
   if (now % width(kWheels) == 0) place_again(beyond_, now);

@@ -1,13 +1,13 @@
 // Sleeping threads by the tick at which they are due: a hierarchical timing wheel.
 //
-// Three wheels of 32 buckets (1, 32 and 1024 ticks wide) and one list for what lies beyond. A timer
-// stands in the first wheel whose buckets reach as far as it is away, and moves down a wheel when
-// the time of its bucket begins; what sleeps for less than 32 ticks never moves. Arming and
-// disarming take constant time, and a timer moves at most three times in its life, so the cost of a
-// sleep does not depend on how many others sleep. Most ticks do nothing: next_work() says when
-// collect() is needed.
+// There are three wheels of 32 buckets (1, 32 and 1024 ticks wide), and one list for timers beyond
+// their reach. A timer is in the first wheel that reaches its due tick, and moves down a wheel when
+// the time of its bucket begins; a sleep of less than 32 ticks never moves. Arming and disarming take
+// constant time, and a timer moves at most three times in its life, so the cost of a sleep does not
+// depend on how many other threads sleep. Most ticks do nothing: next_work() tells when collect() is
+// needed.
 //
-// Ticks wrap (32 bits); a timer is at most kMaxTicks away. The caller keeps others out.
+// Ticks wrap (32 bits); a timer is at most kMaxTicks away. The caller does the locking.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace robosync::kernel {
 
 struct Timer {
   Timer* next = nullptr;
-  Timer** link = nullptr;  // what points at this timer; null when it is not armed
+  Timer** link = nullptr;  // the pointer that points at this timer; null if it is not armed
   std::uint32_t due = 0;
 
   bool armed() const { return link != nullptr; }
@@ -39,7 +39,7 @@ public:
     place(timer, now);
   }
 
-  // Takes an armed timer out. Its bucket stays marked: at worst one collect() that finds nothing.
+  // Removes an armed timer. Its bucket stays marked, so one later collect() may find nothing.
   static void disarm(Timer& timer) {
     *timer.link = timer.next;
     if (timer.next != nullptr) timer.next->link = timer.link;
@@ -53,10 +53,10 @@ public:
     return static_cast<std::int32_t>(now - next_work_) >= 0;
   }
 
-  // Does the work of tick next_work(), and returns the first of the timers that are due then, for
-  // take_first() to take one by one. Call it until has_work() is false.
+  // Does the work of tick next_work(), and returns the list of the timers that are due then; take
+  // them one by one with take_first(). Call it until has_work() is false.
   Timer* collect();
-  // The first of these, disarmed; `due` is then the next one.
+  // Removes and disarms the first timer of the list `due`.
   static Timer& take_first(Timer*& due) {
     Timer& first = *due;
     due = first.next;
@@ -75,7 +75,7 @@ private:
   std::array<std::array<Timer*, kBuckets>, kWheels> wheels_{};
   std::array<std::uint32_t, kWheels> occupied_{};  // bit b: bucket b may hold a timer
   Timer* beyond_ = nullptr;
-  // When the first of the far timers move, at most when those of `beyond_` do; and next_work().
+  // When timers of the upper wheels move next, at the latest when those of `beyond_` do.
   std::uint32_t next_move_ = 1U << (kWheels * kDigitBits);
   std::uint32_t next_work_ = next_move_;
 };

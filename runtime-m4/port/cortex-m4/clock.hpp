@@ -1,11 +1,11 @@
-// The core's clock, counted down in 32 bits. Three kinds of boards:
+// A clock that counts down in 32 bits. There are three kinds of boards:
 //
-// * Those with a free-running counter of that clock. The linker script says where it is (robosync_clock), the board
-//   starts it. SysTick only strikes (strikes_counter.hpp).
-// * Those that say ROBOSYNC_CLOCK_IS_CALLED in board.cmake: it takes more than one load to read theirs, so the board says
-//   how. It may be slower than the core's clock, of which ROBOSYNC_CORE_COUNTS then make one count.
-// * Those that say ROBOSYNC_CLOCK_IS_SYSTICK in board.cmake. There SysTick is all there is: it strikes, ends the core's
-//   sleep, and is the counter (strikes_systick.hpp).
+// * Boards with a free-running counter of the core's clock. The linker script gives its address (robosync_clock), and the board
+//   starts it. SysTick only makes the tick interrupts (strikes_counter.hpp).
+// * Boards that set ROBOSYNC_CLOCK_IS_CALLED in board.cmake: reading their counter takes more than one load, so the board
+//   defines robosync_read_clock(). One count may be ROBOSYNC_CORE_COUNTS cycles of the core's clock.
+// * Boards that set ROBOSYNC_CLOCK_IS_SYSTICK in board.cmake. They have SysTick only: it makes the tick interrupts, ends the
+//   core's sleep, and is the counter (strikes_systick.hpp).
 #pragma once
 
 #include <cstdint>

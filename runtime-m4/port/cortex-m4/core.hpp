@@ -1,4 +1,4 @@
-// The registers of the Cortex-M4's core that the port and the boards touch, and nothing else; SysTick's: systick.hpp.
+// The core registers of the Cortex-M4 that the port and the boards use; those of SysTick are in systick.hpp.
 // Names as in the ARMv7-M manual.
 #pragma once
 
@@ -41,11 +41,11 @@ inline constexpr std::uint32_t kCfsrMemoryStacking = 1U << 4;   // MemManage: fr
 inline constexpr std::uint32_t kCfsrMmarValid = 1U << 7;
 inline constexpr std::uint32_t kCfsrBfarValid = 1U << 15;
 
-// What no region covers is as without an MPU to those with privileges, and closed to others.
+// Where no region applies, privileged code has access as without an MPU, and other code has none.
 inline constexpr std::uint32_t kMpuOn = 0b101;
 inline constexpr std::uint32_t kMpuBaseValid = 1U << 4;  // RBAR names its region
 
-// RASR: who may do what. All of it is normal memory, so that unaligned accesses work.
+// RASR: access rights. The type is always normal memory, so that unaligned accesses work.
 inline constexpr std::uint32_t kMpuNormal = 1U << 17;
 inline constexpr std::uint32_t kMpuNeverExecute = 1U << 28;
 inline constexpr std::uint32_t kMpuClosed = 0U << 24 | kMpuNormal | kMpuNeverExecute;
@@ -54,16 +54,17 @@ inline constexpr std::uint32_t kMpuOthersRead = 2U << 24 | kMpuNormal | kMpuNeve
 inline constexpr std::uint32_t kMpuAllWrite = 3U << 24 | kMpuNormal | kMpuNeverExecute;
 inline constexpr std::uint32_t kMpuCode = 6U << 24 | kMpuNormal;  // read and execute, for all
 
-// Interrupt priorities, the lower number the more urgent. Everything from kKernelPriority on is
-// held off by the kernel's critical sections and may call the kernel; what is more urgent is never
-// held off and must not call it. All interrupts of the kernel's level have the same priority, so
-// they do not nest. The switch and the tick have the lowest there is: neither preempts the other,
-// and neither delays an interrupt. A processor has the upper bits of these bytes only, two at the least: those that are used
-// here. (To BASEPRI some emulators give all eight, and 0xFF would then hold off nobody who has four.)
+// Interrupt priorities: a lower number is more urgent. The kernel's critical sections hold off
+// interrupts of kKernelPriority and less urgent ones, which may call the kernel. More urgent ones are
+// never held off and must not call it. All interrupts of the kernel's level have the same priority,
+// so they do not nest. The switch and the tick have the lowest priority used: neither preempts the
+// other, and neither delays an interrupt. A processor implements only the upper bits of a priority
+// byte; the two used here always exist. (0xFF would not do: some emulators implement all eight bits
+// of BASEPRI, and 0xFF then holds off no interrupt whose priority has four bits.)
 inline constexpr std::uint32_t kKernelPriority = 0x40;
 inline constexpr std::uint32_t kSwitchPriority = 0xC0;
 
-// For the reset handler: turns the FPU on, and holds the kernel's interrupts off until
+// For the reset handler: turns the FPU on, and holds off interrupts of the kernel's level until
 // Machine::run().
 [[gnu::always_inline]] inline void prepare() {
   reg(kCpacr) = 0xFU << 20;
@@ -71,12 +72,12 @@ inline constexpr std::uint32_t kSwitchPriority = 0xC0;
   asm volatile("msr basepri, %0\n\tdsb\n\tisb" ::"r"(kKernelPriority) : "memory");
 }
 
-// The NVIC's registers hold 32 interrupts a word; writing 0 to the others' bits changes nothing.
+// These NVIC registers hold 32 interrupts per word; writing 0 to the bits of the others has no effect.
 inline void write_bit(std::uintptr_t registers, unsigned number) {
   reg(registers + std::uintptr_t{4} * (number / 32)) = 1U << (number % 32);
 }
 
-// Enables interrupt `number`, at the kernel's level.
+// Enables interrupt `number`, by default at the kernel's level.
 inline void enable_interrupt(unsigned number, std::uint8_t priority = kKernelPriority) {
   auto* priorities =
       reinterpret_cast<volatile std::uint8_t*>(kNvicIpr);  // NOLINT(performance-no-int-to-ptr)
@@ -84,12 +85,12 @@ inline void enable_interrupt(unsigned number, std::uint8_t priority = kKernelPri
   write_bit(kNvicIser, number);
 }
 
-// Makes interrupt `number` happen.
+// Sets interrupt `number` pending.
 inline void pend_interrupt(unsigned number) {
   write_bit(kNvicIspr, number);
 }
 
-// … and takes it back.
+// Clears its pending state.
 inline void clear_interrupt(unsigned number) {
   write_bit(kNvicIcpr, number);
 }

@@ -2,7 +2,7 @@
    slow where it matters, times divided by 1000.
 
    The dividend is in r1:r0, the divisor in r3:r2; quotient and remainder come back in r1:r0 and r3:r2
-   (the run-time ABI for the Arm architecture). A division by 0 gives anything, but ends. */
+   (the run-time ABI for the Arm architecture). A division by 0 terminates, with an undefined result. */
 
     .syntax unified
     .cpu    cortex-m4
@@ -13,8 +13,8 @@
     .type   __aeabi_uldivmod, %function
     .type   __aeabi_ldivmod, %function
 
-/* What fits a word, as most does, needs one division. By a divisor of 16 bits: in digits of 16 bits, so that a
-   remainder and the next digit fit a word. */
+/* Operands that both fit a word, the usual case, need one division. A longer dividend with a divisor of 16 bits is
+   divided in digits of 16 bits, so that a remainder and the next digit fit a word. */
     .thumb_func
 __aeabi_uldivmod:
     cbnz    r3, by_bits
@@ -41,7 +41,7 @@ __aeabi_uldivmod:
     movs    r3, #0
     bx      lr
 
-/* Bit by bit: first the divisor is shifted to where its highest bit meets the dividend's. */
+/* Bit by bit: first the divisor is shifted so that its highest bit lines up with the dividend's. */
 by_bits:
     push    {r4-r8, lr}
     movs    r4, #0                  /* quotient */

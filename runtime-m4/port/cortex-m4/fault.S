@@ -1,4 +1,4 @@
-/* All fault handlers: collect what the core did not stack, and let C++ decide.
+/* All fault handlers: collect the registers that the core did not stack, and call C++.
    robosync_fault returns the EXC_RETURN to leave with. */
 
     .syntax unified
@@ -19,8 +19,8 @@ MemManage_Handler:
 BusFault_Handler:
     .thumb_func
 UsageFault_Handler:
-    ldr     r2, =0xE000EF34         /* FPCCR: drop FPU registers whose saving was put off; */
-    ldr     r3, [r2]                /* their place may lie outside of the stack */
+    ldr     r2, =0xE000EF34         /* FPCCR: drop FPU registers whose stacking is deferred; */
+    ldr     r3, [r2]                /* the space for them may lie outside the stack */
     bic     r3, r3, #1
     str     r3, [r2]
     mov     r0, sp                  /* where the core stacked if a handler faulted */

@@ -1,7 +1,7 @@
-// Fault handlers. A thread that faults is stopped and reported, and the others go on. A fault in a
-// handler, in the kernel or in the safety thread leaves nothing to rely on: outputs off, reset.
+// Fault handlers. A thread that faults is stopped and reported, and the others continue. A fault in a
+// handler, in the kernel or in the safety thread is fatal: outputs off, reset.
 //
-// Nothing is believed of the thread: its stack pointer is used only if it lies in its own stack.
+// The thread is not trusted: its stack pointer is used only if it points into its own stack.
 #include "runtime-m4/port/cortex-m4/fault.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
-// Places in switch.S.
+// Labels in switch.S.
 extern "C" {
 void robosync_saving_core();
 void robosync_saving_fpu();
@@ -29,8 +29,8 @@ namespace {
 
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;  // thread mode, PSP, no FPU frame
 constexpr std::uint32_t kWithoutFpu = 1U << 4;          // bits of EXC_RETURN as switch.S saves it
-constexpr std::uint32_t kMarkUnprivileged = 1U << 5;  // … 0: of a thread without privileges, for
-constexpr std::uint32_t kUnprivilegedWithoutFpu = 1U << 6;  // … which this says what bit 4 says
+constexpr std::uint32_t kMarkUnprivileged = 1U << 5;    // … 0 for an unprivileged thread
+constexpr std::uint32_t kUnprivilegedWithoutFpu = 1U << 6;  // … bit 4 of an unprivileged thread
 constexpr std::uint32_t kFromThreadMode = 1U << 3;          // bits of EXC_RETURN
 constexpr std::uint32_t kFromPsp = 1U << 2;
 
@@ -83,7 +83,7 @@ void copy_frame(const CoreFrame& frame, link::Fault& fault) {
   fault.r[12] = frame.r12;
 }
 
-// What the core stacked there for the thread, if it is the thread's own stack.
+// Copies the frame that the core stacked at `sp`, if that is in the thread's own stack.
 [[gnu::noinline]] void copy_frame_at(std::uint32_t sp, const kernel::Thread& thread,
                                      link::Fault& fault) {
   fault.sp = sp;
@@ -95,16 +95,16 @@ void copy_frame(const CoreFrame& frame, link::Fault& fault) {
   hooks::thread_faulted(thread, fault);
 }
 
-// A stopped thread's stack is free, so its stack pointer is put where the switch that follows can
-// save registers, whatever the thread made of it.
+// The switch that follows saves the registers of the stopped thread. Sets its stack pointer to a valid
+// place for that; the stack is no longer needed.
 void make_switch_safe(kernel::Thread& thread) {
   const auto top = reinterpret_cast<std::uintptr_t>(thread.stack().data() + thread.stack().size());
   const std::uint32_t sp = (top & ~std::uintptr_t{7}) - sizeof(CoreFrame);
   asm volatile("msr psp, %0" ::"r"(sp) : "memory");
 }
 
-// Of the kernel's level, or all of them: then it is in the midst of something, and the switch that would follow a stop does
-// not come.
+// True if the thread holds off interrupts of the kernel's level, or all of them. Then a change may be half done, and the switch
+// after a stop would not happen.
 bool holds_interrupts_off() {
   std::uint32_t basepri = 0;
   std::uint32_t primask = 0;
@@ -118,12 +118,12 @@ bool from_thread(const FaultEntry& entry) {
   return (entry.exc_return & kThread) == kThread;
 }
 
-// Whose doing it is.
+// Where the fault occurred.
 struct Origin {
-  bool thread;               // it runs, or the switch was saving its registers on its stack
-  bool saving;               // … the latter
-  bool saving_unprivileged;  // … of a thread without privileges
-  bool no_room;              // … for which there was no room
+  bool thread;               // in the running thread, or while the switch saved its registers
+  bool saving;               // while the switch saved registers on the thread's stack
+  bool saving_unprivileged;  // … of an unprivileged thread
+  bool no_room;              // … which had no room for them
 };
 
 Origin origin_of(const FaultEntry& entry) {
@@ -138,13 +138,13 @@ Origin origin_of(const FaultEntry& entry) {
   return origin;
 }
 
-// Whether the kernel can go on without the thread.
+// Whether the kernel can continue without the thread.
 bool may_go_on(const kernel::Thread& thread, const Origin& origin) {
   return origin.thread && !holds_interrupts_off() && &thread != &robosync_kernel.idle() &&
          thread.category() != kernel::Category::safety;
 }
 
-// The guard was touched, or the core found no room for a frame.
+// The thread touched the guard, or the core had no room for a frame.
 bool is_overflow(const kernel::Thread& thread, std::uint32_t cause, std::uint32_t address) {
   if ((cause & core::kCfsrMemoryStacking) != 0) return true;
   const std::uint32_t guard = word_of(thread.stack().data()) - kGuard;
@@ -160,7 +160,7 @@ void describe(const kernel::Thread& thread, const FaultEntry& entry, const Origi
   if (origin.no_room) fault.cause = kCauseStackOverflow;
   if (is_overflow(thread, fault.cause, fault.address)) fault.cause |= kCauseStackOverflow;
   std::copy(entry.r4_r11.begin(), entry.r4_r11.end(), fault.r.begin() + 4);
-  // What a thread left on its own stack, even when it is the context switch that faulted.
+  // The thread's own frame, even if the context switch faulted.
   if (origin.thread) {
     copy_frame_at(entry.psp, thread, fault);
   } else {
@@ -169,9 +169,9 @@ void describe(const kernel::Thread& thread, const FaultEntry& entry, const Origi
   }
 }
 
-// Lets the context switch go on as if it had saved the thread's registers.
+// Lets the context switch continue as if it had saved the thread's registers.
 void skip_saving(const FaultEntry& entry, const Origin& origin) {
-  constexpr std::uint32_t kPartOfInstruction = 0x0600'FC00;  // how far a store-multiple had come
+  constexpr std::uint32_t kPartOfInstruction = 0x0600'FC00;  // progress of a store-multiple
   CoreFrame& frame = handler_frame(entry);
   frame.pc =
       word_of(origin.saving_unprivileged ? robosync_saved_unprivileged : robosync_saved) & ~1U;
@@ -185,7 +185,7 @@ void enable_fault_handlers() {
   core::reg(core::kCcr) |= core::kCcrDivideByZeroTrap;
 }
 
-// What it was at is told by what the switch saved: switch.S draws it, and says what the bits mean.
+// Reports the registers that the switch saved; switch.S shows their layout and the bits of EXC_RETURN.
 void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   constexpr std::size_t kExcReturn = 8;  // index, above r4–r11
   constexpr std::size_t kFpuWords = 16;
@@ -201,7 +201,7 @@ void stop_overrun(kernel::Kernel&, kernel::Thread& thread) {
   stop_and_report(thread, fault);
 }
 
-// Stops the running thread, unless a fault before it has done so already.
+// Stops the running thread, unless an earlier fault already has.
 void Machine::refuse_call() {
   kernel::Thread& thread = robosync_kernel.current();
   if (robosync_kernel.state(thread) == kernel::Thread::State::stopped) return;
@@ -228,7 +228,7 @@ std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry) {
   describe(thread, *entry, origin, fault);
   if (!may_go_on(thread, origin)) hooks::fatal_fault(fault);
   core::reg(core::kCfsr) = 0xFFFF'FFFF;  // write 1 to clear
-  // One instruction may make two faults: an undefined one whose frame could not be stacked either.
+  // One instruction may cause two faults: it is undefined, and its frame could not be stacked either.
   if (robosync_kernel.state(thread) != robosync::kernel::Thread::State::stopped) {
     stop_and_report(thread, fault);
   }
@@ -236,8 +236,7 @@ std::uint32_t robosync_fault(const robosync::port::FaultEntry* entry) {
     skip_saving(*entry, origin);
     return entry->exc_return;
   }
-  core::reg(core::kShcsr) &=
-      ~core::kShcsrCallPending;  // it wanted to, and is not asked what any more
+  core::reg(core::kShcsr) &= ~core::kShcsrCallPending;  // drops a system call of the stopped thread
   make_switch_safe(thread);
   return kReturnToThread;
 }

@@ -1,4 +1,4 @@
-// What the Cortex-M4 port asks of the program it is linked into (boards/common/main.cpp and
+// What the Cortex-M4 port needs from the program it is linked into (boards/common/main.cpp and
 // boards/NAME/).
 #pragma once
 
@@ -19,18 +19,19 @@ namespace robosync::port::hooks {
 // Counts of the clock (clock.hpp) in a tick (kernel::kTick).
 extern const std::uint32_t kTickCounts;
 
-// Only where the clock is not SysTick (clock.hpp). All threads wait: after so many counts an interrupt of the lowest priority is to end the core's
-// sleep, unless another did before. It is pending then, and never taken: clear_alarm() takes it
-// back. The alarm does not repeat itself.
+// Only where the clock is not SysTick (clock.hpp). All threads are blocked: after `counts`, an
+// interrupt of the lowest priority must end the core's sleep, unless another interrupt ends it
+// earlier. That interrupt stays pending and is never taken: clear_alarm() clears it. The alarm does
+// not repeat.
 void set_alarm(std::uint32_t counts);
 void clear_alarm();
 
-// A thread was stopped by a fault; the others go on. Called from the fault handler or the context
+// A fault has stopped a thread; the others continue. Called from the fault handler or the context
 // switch: may signal threads, must be short.
 void thread_faulted(kernel::Thread& thread, const link::Fault& fault);
 
-// Nothing can go on: a fault in a handler, in the kernel, or in the safety thread. Must put the
-// outputs into their safe state and reset.
+// A fatal fault: in a handler, in the kernel, or in the safety thread. Must put the outputs into their
+// safe state and reset.
 [[noreturn]] void fatal_fault(const link::Fault& fault);
 
 }  // namespace robosync::port::hooks

@@ -1,4 +1,4 @@
-// See isolation.hpp. The regions of the running thread are set by the switch (switch.S).
+// See isolation.hpp. switch.S sets the regions of the running thread.
 #include "runtime-m4/port/cortex-m4/isolation.hpp"
 
 #include "runtime-m4/kernel/kernel.hpp"
@@ -22,7 +22,7 @@ std::uint32_t size_of(policy::regions::Region region, std::uint32_t access) {
   return region.size_and_eighths == 0 ? 0 : access | region.size_and_eighths;
 }
 
-// Under a Lock: the switch sets regions, too.
+// Call under a Lock, because the switch sets regions too.
 void set(RegionNumber number, policy::regions::Region region, std::uint32_t access) {
   core::reg(core::kMpuRbar) = base_of(number, region.base);
   core::reg(core::kMpuRasr) = size_of(region, access);

@@ -1,16 +1,16 @@
-// The MPU's eight regions. Where two overlap, the higher number counts.
+// The MPU's eight regions. Where two overlap, the higher number applies.
 //
-//   0     memory, 0 … 1 GB                  privileged only, never executed
-//   1     code, 0 … 256 MB                  all read and execute, nobody writes; RAM may begin behind it
-//   2     Areas::readable                   … and read by others
-//   3, 4  Areas::writable                   … and written by others
-//   5, 6  stack of a thread without privileges, while it runs (later ones leave it as it was, which
-//         tells those with privileges nothing new); of a secluded one, 5 closes all RAM and 6 is its stack;
-//         of a sandbox (sandbox.hpp), its window
-//   7     guard below the stack of a thread with privileges, while it runs: nobody
+//   0     memory, 0 … 1 GB                  privileged access only, never executable
+//   1     code, 0 … 256 MB                  read-only and executable for all; RAM may begin after it
+//   2     Areas::readable                   unprivileged threads may read it
+//   3, 4  Areas::writable                   unprivileged threads may read and write it
+//   5, 6  stack of the running unprivileged thread (privileged threads leave it open, which gives them
+//         no new access); for a secluded thread, 5 closes all RAM and 6 is its stack; for a sandbox
+//         (sandbox.hpp), its window
+//   7     guard below the stack of the running privileged thread: no access
 //
-// What no region covers is as without an MPU to privileged code (peripherals, external RAM), and
-// closed to others. So a thread without privileges has no address that is not listed here.
+// Where no region applies, privileged code has access as without an MPU (peripherals, external RAM),
+// and unprivileged code has none. So an unprivileged thread can access only what is listed here.
 #pragma once
 
 #include <cstdint>
@@ -31,12 +31,12 @@ enum class RegionNumber : std::uint8_t {
   guard
 };
 
-// For the base register.
+// The value of the MPU's base register.
 constexpr std::uint32_t base_of(RegionNumber number, std::uint32_t base) {
   return base | core::kMpuBaseValid | static_cast<std::uint32_t>(number);
 }
 
-// Switches the MPU on, with regions 0, 1 and 7. [init]
+// Turns the MPU on, with regions 0, 1 and 7. [init]
 void start_isolation();
 
 }  // namespace robosync::port

@@ -1,4 +1,4 @@
-// Makes threads runnable, says where the context switch finds what, and takes system calls.
+// Prepares threads to run, asserts the layout that switch.S relies on, and takes system calls.
 #include "runtime-m4/port/cortex-m4/machine.hpp"
 
 #include <array>
@@ -25,11 +25,11 @@ namespace {
 
 constexpr std::uint32_t kXpsrThumb = 1U << 24;
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFFD;        // thread mode, PSP, no FPU frame
-constexpr std::uint32_t kReturnToUnprivileged = 0xFFFF'FFCD;  // … without privileges, for switch.S
+constexpr std::uint32_t kReturnToUnprivileged = 0xFFFF'FFCD;  // … unprivileged, for switch.S
 
 constexpr std::uint32_t kReturnToSecluded = 0xFFFF'FF8D;  // … as if it had used the FPU
 
-// What a thread's stack holds before it runs for the first time; switch.S draws it.
+// The contents of a thread's stack before it first runs; switch.S shows the layout.
 struct SavedRegisters {
   std::array<std::uint32_t, 8> r4_r11;
   std::uint32_t exc_return;
@@ -38,11 +38,11 @@ struct FirstFrame {
   SavedRegisters saved;
   CoreFrame stacked;
 };
-// … of one that has used the FPU, more between the two, and above them.
+// If a thread has used the FPU, there are more bytes between the two, and above them.
 constexpr std::uint32_t kS16ToS31 = 16 * 4;
 constexpr std::uint32_t kS0ToS15AndFpscr = 18 * 4;
 
-// switch.S loads what stands here in one instruction, and more of it by these distances.
+// switch.S loads the first members in one instruction, and uses the offsets of the others.
 using kernel::Selection;
 static_assert(std::is_standard_layout_v<Selection> && kernel::kMaxThreads == 3 * 32);
 static_assert(offsetof(Selection, running_) == 0 && offsetof(Selection, run_clock_) == 4);
@@ -54,7 +54,7 @@ static_assert(offsetof(Selection, by_rank_) == 32);
 // The idle thread needs the frame of an interrupt and of a switch, without FPU registers.
 alignas(kGuard) std::array<std::byte, kGuard + 96> idle_stack;
 
-// Where a thread's entry returns to.
+// A thread's entry returns to this.
 [[noreturn]] void thread_ended() {
   robosync_kernel.stop(robosync_kernel.current());
   while (true) {
@@ -65,12 +65,12 @@ std::uint32_t word_of(const void* address) {
   return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(address));
 }
 
-// What the MPU's base register needs to guard the bytes below a usable stack.
+// The value of the MPU's base register for the guard below a usable stack.
 std::uint32_t guard_below(std::span<const std::byte> stack) {
   return base_of(RegionNumber::guard, word_of(stack.data()) - kGuard);
 }
 
-// The window of a thread without privileges.
+// Sets the window of an unprivileged thread.
 void set_stack_window(Context& context, std::span<const std::byte> stack) {
   const auto bytes = static_cast<std::uint32_t>(stack.size());
   const policy::regions::Window window =
@@ -155,9 +155,9 @@ extern "C" {
 void PendSV_Unprivileged_Handler();
 void SVC_Handler();
 
-// PendSV while a thread without privileges runs. Its stack pointer may be anything at which the
-// core was let stack a frame, and saving has privileges: there must be room on the thread's own
-// stack. Ends in a jump, so that lr and r4–r11 are the thread's when switch.S saves them.
+// PendSV while an unprivileged thread runs. Its stack pointer may be any address at which the core
+// could stack a frame, but registers are saved with privileges: so this checks that there is room on
+// the thread's own stack. It ends in a jump, so lr and r4–r11 are the thread's when switch.S saves them.
 void PendSV_Unprivileged_Handler() {
   using namespace robosync::port;
   std::uint32_t psp = 0;
@@ -167,10 +167,10 @@ void PendSV_Unprivileged_Handler() {
   return robosync_save_unprivileged(psp);
 }
 
-// A system call of a thread without privileges: only its vector table has this. At the kernel's own
-// priority, so that no Lock is needed. Nothing is believed: number and argument are numbers, and
-// the frame they come in was stacked by the core with the rights of the thread, so it lies where
-// the thread may write.
+// A system call. Only the vector table of unprivileged threads has this handler. It runs at the
+// kernel's own priority, so it needs no Lock. The thread is not trusted: number and argument are no
+// addresses, and the core stacked their frame with the thread's rights, so the frame lies where the
+// thread may write.
 void SVC_Handler() {
   using namespace robosync::port;
   CallFrame* call = nullptr;

@@ -1,11 +1,11 @@
 // The Cortex-M4 as a machine for the kernel. There is one, and it runs `robosync_kernel`.
 //
-// Threads run on PSP, handlers on MSP. The switch is PendSV at the lowest priority (switch.S), and
-// so is the tick, SysTick. Critical sections raise BASEPRI, to the kernel's level or to that of
-// these two only: interrupts above the kernel's level are never held off. Until
-// run() the kernel's level is held off altogether (the board's reset handler sees to that).
+// Threads run on PSP, handlers on MSP. The switch is PendSV (switch.S) and the tick is SysTick, both
+// at the lowest priority. Critical sections raise BASEPRI, to the kernel's level or to that of the
+// switch and the tick: interrupts above the kernel's level are never held off. Until run(), all
+// interrupts of the kernel's level are held off (by the board's reset handler).
 //
-// What the MPU closes, and to whom: isolation.hpp.
+// What the MPU closes, and to which threads: isolation.hpp.
 #pragma once
 
 #include <cstddef>
@@ -24,47 +24,46 @@ struct ThreadSpec;
 
 namespace robosync::port {
 
-// Below the stack of each thread with privileges stand 32 bytes that nobody may touch while it
-// runs: the MPU makes a fault of the first access. Bytes between a stack's start and what a thread
-// can use of it:
+// Bytes of the guard below the usable stack of each privileged thread. While the thread runs, the MPU
+// turns any access to the guard into a fault.
 inline constexpr std::size_t kGuard = 32;
 inline constexpr bool kTimeFlows = true;
 inline constexpr std::size_t kArenaScale = 1;
 inline constexpr std::size_t kStackAlignment = kGuard;  // any other alignment wastes bytes
 
-// The stack of a thread without privileges is all that it can write around there, so it needs no
-// guard; its borders are those of the eighths of a window of two MPU regions (regions.hpp).
+// An unprivileged thread can write nothing next to its stack, so it needs no guard. The stack begins
+// and ends at eighths of a window of two MPU regions (regions.hpp).
 inline constexpr unsigned kStackWindowBits = 9;
 inline constexpr std::size_t kUnprivilegedStackAlignment = (std::size_t{1} << kStackWindowBits) / 8;
 inline constexpr std::size_t kMaxUnprivilegedStack =
-    9 * kUnprivilegedStackAlignment;  // wherever it begins
+    9 * kUnprivilegedStackAlignment;  // fits a window wherever it begins
 
-// One that has data on its stack, and nothing else: a single region, so that the other one of the
-// window can close the rest of the memory.
+// The stack of a secluded thread (ThreadSpec::data_bytes) is a single region. The other region of the
+// window closes the rest of RAM.
 inline constexpr unsigned kSecludedBits = 10;
 inline constexpr std::size_t kSecludedStack = std::size_t{1} << kSecludedBits;
 
-// Alignment and guard, what the core stacks with FPU registers, and what switch.S adds.
+// Room for alignment and guard, the core's frame with FPU registers, and what switch.S saves.
 inline constexpr std::size_t kFrame = 104;
 inline constexpr std::size_t kSaved = 100;
 inline constexpr std::size_t kMinStack = kGuard - 8 + kGuard + kFrame + kSaved;
 
-// switch.S knows where these stand.
+// switch.S relies on this layout.
 struct Context {
-  std::uint32_t* sp = nullptr;  // r4–r11 and EXC_RETURN stand there, below the core's own frame
-  std::uint32_t run_time = 0;   // how long it ran, until it stopped last
-  // For the MPU's base register: the guard; without privileges, the lower region of the window; of a
-  // secluded thread, its stack.
+  std::uint32_t* sp = nullptr;  // points at r4–r11 and EXC_RETURN, saved below the core's frame
+  std::uint32_t run_time = 0;   // counts of the clock until the thread was last switched out
+  // For the MPU's base register: the guard; for an unprivileged thread, the lower region of its
+  // window; for a secluded one, its stack.
   std::uint32_t region = 0;
-  // Without privileges: sizes and eighths of the lower region, and above them of the upper one; of a
-  // secluded thread, the size of its stack's, and kSecluded.
+  // For an unprivileged thread: size and eighths of the lower region, and in the upper half those of
+  // the upper region; for a secluded one, the size of its stack, and kSecluded.
   std::uint32_t windows = 0;
   static constexpr std::uint32_t kSecluded = 1U << 22;  // no bit of a size or of eighths
 };
 static_assert(offsetof(Context, sp) == 0 && offsetof(Context, run_time) == 4);
 static_assert(offsetof(Context, region) == 8 && offsetof(Context, windows) == 12);
 
-// What the core stacks.
+// What the core stacks at exception entry.
 struct CoreFrame {
   std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
 };
@@ -73,16 +72,16 @@ struct CallFrame : CoreFrame {
   std::uint32_t number() const { return r0; }
   std::uint32_t argument() const { return r1; }
   void give(std::uint32_t result) { r0 = result; }
-  void repeat() { pc -= 2; }  // to the SVC, which has no other length
+  void repeat() { pc -= 2; }  // back to the SVC, which is always 2 bytes long
 };
 
-// Of the running thread: its run time so far is `origin` less the clock.
+// The run time of the running thread so far is `origin` minus the clock.
 struct RunClock {
   std::uint32_t origin = 0;
 #if defined(ROBOSYNC_CLOCK_IS_SYSTICK) || defined(ROBOSYNC_CLOCK_IS_CALLED)
   std::uint32_t unused = 0;
 #else
-  const volatile std::uint32_t* clock = &robosync_clock;  // as the switch finds it
+  const volatile std::uint32_t* clock = &robosync_clock;  // for the switch
 #endif
 };
 
@@ -132,7 +131,7 @@ inline std::uint32_t fetch_and_clear(std::uint32_t& word, std::uint32_t mask) {
 
 void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread);  // fault.cpp
 
-// Number and argument go in r0 and r1, the result comes in r0 (SVC_Handler).
+// Passes number and argument in r0 and r1; the result is in r0 (SVC_Handler).
 inline std::uint32_t call(kernel::Kernel&, std::uint32_t number, std::uint32_t argument) {
   register std::uint32_t r0 asm("r0") = number;
   register std::uint32_t r1 asm("r1") = argument;
@@ -140,14 +139,14 @@ inline std::uint32_t call(kernel::Kernel&, std::uint32_t number, std::uint32_t a
   return r0;
 }
 
-// Never make one const: GCC then keeps it in memory ("store to a read-only decl" stops its scalar
+// Never declare one const: GCC then keeps it in memory ("store to a read-only decl" prevents scalar
 // replacement), which costs four instructions in every path.
 template <std::uint32_t kLevel>
 class LockOfLevel {
 public:
   explicit LockOfLevel(const Machine&) : outer_(raise()) {}
-  // A switch that was requested under the lock happens here, give or take an instruction: without
-  // a barrier the core may finish what it has fetched. Waiting does not rely on it.
+  // A switch that was requested under the lock happens here, give or take an instruction: without a
+  // barrier the core may first execute what it has fetched. Kernel::wait() does not rely on it.
   ~LockOfLevel() { asm volatile("msr basepri, %0" ::"r"(outer_) : "memory"); }
   LockOfLevel(const LockOfLevel&) = delete;
   LockOfLevel& operator=(const LockOfLevel&) = delete;
@@ -164,8 +163,8 @@ private:
 using Lock = LockOfLevel<core::kKernelPriority>;
 using SwitchLock = LockOfLevel<core::kSwitchPriority>;
 
-// A Lock for who holds none, nor a SwitchLock: a thread, or the tick. What was before need not be
-// kept.
+// A Lock for a caller that holds neither a Lock nor a SwitchLock: a thread, or the tick. So it need
+// not save the level before.
 class OnlyLock {
 public:
   explicit OnlyLock(const Machine&) { set(core::kKernelPriority); }

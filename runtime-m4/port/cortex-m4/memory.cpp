@@ -1,5 +1,5 @@
 // memcpy, memmove, memset and strlen for a board with little flash: the C library's own are written
-// for speed and take 900 bytes. Whole words where both ends are aligned, bytes otherwise.
+// for speed and take 900 bytes. memcpy copies words if both addresses are aligned; the rest is bytes.
 #include <cstddef>
 #include <cstdint>
 

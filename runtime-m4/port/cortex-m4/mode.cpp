@@ -1,4 +1,4 @@
-// What runs, for the kernel's assertions (kernel/assertions.hpp). Nothing of it is in the firmware.
+// The current mode and lock, for the kernel's assertions (kernel/assertions.hpp). Not in the firmware.
 #include "runtime-m4/port/cortex-m4/machine.hpp"
 
 namespace robosync::port {
@@ -39,8 +39,8 @@ Held Machine::held() {
   return level <= core::kKernelPriority ? Held::lock : Held::switch_lock;
 }
 
-// A fault of a thread, which has a higher level, stands for its thread: it is handled only when
-// that holds no lock (fault.cpp).
+// A fault handler runs at a higher level, but acts for the thread that faulted, and calls the kernel
+// only if that thread holds no lock (fault.cpp).
 bool Machine::may_call() {
   constexpr unsigned kLastFault = 6;
   const unsigned number = exception();

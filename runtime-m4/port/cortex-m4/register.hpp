@@ -1,5 +1,5 @@
-// A register of the core or of a peripheral, by its address. On the chip that is what it is; on the host a test says what
-// the register does (tests/runtime-m4/boards), so that what drives hardware that no emulator has is tested as it is shipped.
+// A register of the core or of a peripheral, by its address. On the host, tests simulate the registers
+// (tests/runtime-m4/boards), so drivers of hardware that no emulator has are tested as shipped.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 namespace robosync::port {
 
 #if !defined(__arm__)
-// The test's.
+// Defined by the test.
 std::uint32_t read_register(std::uintptr_t address);
 void write_register(std::uintptr_t address, std::uint32_t value);
 std::uint32_t bus_address(const volatile void* memory);
 #else
-// Where a peripheral that reads memory by itself finds it.
+// The address of memory as a DMA peripheral sees it.
 inline std::uint32_t bus_address(const volatile void* memory) {
   return reinterpret_cast<std::uintptr_t>(memory);
 }
@@ -48,14 +48,14 @@ struct Register {
   void clear(std::uint32_t bits) const {
     write(read() & ~bits);
   }
-  // Of a register that is a row of fields, each of `bits` bits: the one with that index becomes `value`.
+  // For a register that is a row of fields of `bits` bits each: sets field `index` to `value`.
   void set_field(unsigned index, unsigned bits, std::uint32_t value) const {
     const std::uint32_t mask = (1U << bits) - 1;
     write((read() & ~(mask << (index * bits))) | (value & mask) << (index * bits));
   }
 };
 
-// Nothing comes between: not even who is more urgent than the kernel.
+// Masks all interrupts, even those above the kernel's level.
 class Alone {
 public:
 #if defined(__arm__)
@@ -76,7 +76,7 @@ private:
   [[maybe_unused]] std::uint32_t outer_ = 0;
 };
 
-// … and the MPU is off: flash may be written, and what stands in RAM may run.
+// Masks all interrupts and turns the MPU off, so that flash can be written and code can run in RAM.
 class Unprotected {
 public:
 #if defined(__arm__)

@@ -1,30 +1,30 @@
-/* A function without privileges in the midst of a thread that has them (sandbox.hpp).
+/* An unprivileged function inside a privileged thread (sandbox.hpp).
 
-   In: the MPU's regions 5 and 6, which are those of whoever ran last without privileges, become the sandbox's; all
-   registers that the caller wants back are on its own stack, whose pointer nobody without privileges can write; then
-   the stack is the sandbox's, and CONTROL.nPRIV takes the rights.
+   Entry: the MPU's regions 5 and 6, still those of the last unprivileged thread, are set to the sandbox's window. The
+   callee-saved registers are pushed on the caller's own stack, and its stack pointer is stored where unprivileged code
+   cannot write. Then PSP is set to the sandbox's stack, and CONTROL.nPRIV removes the privileges.
 
-   Out: by SVC alone, to one place. Nothing is believed: the caller's stack pointer is the one that was noted, the
-   place to return to stands here, and all registers but the result come from the caller's stack. While a thread with
-   privileges runs, the vector table has this handler (boards/common/vectors.hpp); other threads cannot come here. */
+   Exit: only by SVC, and only to one place. The function is not trusted: the caller's stack pointer is the stored one,
+   the return address is fixed here, and all registers but the result come from the caller's stack. While a privileged
+   thread runs, the vector table has this handler (boards/common/vectors.hpp); unprivileged threads cannot reach it. */
 
     .syntax unified
     .cpu    cortex-m4
     .thumb
 
-    .equ    MPU_RBAR, 0xE000ED9C    /* its size, and both again for another region, stand behind it */
-    .equ    UNPRIVILEGED, 3         /* CONTROL: nPRIV, and SPSEL as ever */
-    .equ    FRAME, 32               /* what the core takes from the stack when an exception returns … */
-    .equ    FRAME_PC, 24            /* … in it: pc, xPSR */
+    .equ    MPU_RBAR, 0xE000ED9C    /* followed by RASR, and by both again for another region */
+    .equ    UNPRIVILEGED, 3         /* CONTROL: nPRIV, and SPSEL as before */
+    .equ    FRAME, 32               /* bytes that the core pops when an exception returns */
+    .equ    FRAME_PC, 24            /* offset of pc and xPSR in it */
     .equ    XPSR_THUMB, 1 << 24
 
-/* int32 robosync_call_in_sandbox(r0, r1, r2: the function's; r3: Sandbox) */
+/* int32 robosync_call_in_sandbox(r0, r1, r2: the function's arguments; r3: Sandbox) */
     .section .text.robosync_call_in_sandbox, "ax"
     .global robosync_call_in_sandbox
     .type   robosync_call_in_sandbox, %function
     .thumb_func
 robosync_call_in_sandbox:
-    push    {r3-r11, lr}            /* ten, so that a frame below them is aligned */
+    push    {r3-r11, lr}            /* ten words, so that a frame below them is aligned */
     ldmia   r3, {r4-r9}
     ldr     r3, =MPU_RBAR
     stmia   r3, {r4-r7}
@@ -46,7 +46,7 @@ robosync_call_in_sandbox:
 SVC_Sandbox_Handler:
     mrs     r0, control
     lsrs    r0, r0, #1
-    bcc     Unexpected_Handler      /* who has privileges has nothing to ask for */
+    bcc     Unexpected_Handler      /* privileged code makes no system calls */
     mrs     r0, psp
     ldr     r3, =robosync_sandbox_caller
     ldr     r0, [r0]                /* r0 of the frame: the result */

@@ -1,8 +1,8 @@
-// Lets a thread with privileges run a function without them, in the midst of its own work: with one window of memory
-// that it may write, its stack included. sandbox.S is how.
+// Lets a privileged thread call a function that runs unprivileged. The function may write one window of memory, which
+// includes its stack. sandbox.S implements it.
 //
-// Only for the thread of the highest rank, which no other comes between: the core's rights are not part of what a switch
-// keeps of a thread with privileges. One sandbox is in use at a time.
+// Only for the thread of the highest rank, which no other thread preempts: a switch does not save CONTROL for a privileged
+// thread. One sandbox is in use at a time.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@ namespace robosync::port {
 
 class Sandbox {
 public:
-  // Reads what threads without privileges may read, or may write (Areas). What it returns is not to be believed.
+  // May read what unprivileged threads may read or write (Areas). Do not trust its result.
   using Function = std::int32_t (*)(void*, const void*, void*);
 
-  // The window must be one of two regions of the MPU (policy::regions::finest_window), else nothing is open. The stack
-  // ends at `stack_top`, inside of it, aligned to 8.
+  // The window must fit two regions of the MPU (policy::regions::finest_window), else nothing is open. The stack ends at
+  // `stack_top`, inside the window, aligned to 8.
   void set(std::span<std::byte> window, std::byte* stack_top, Function function);
-  // An access to anything else is a fault of the calling thread; so is an exception in it.
+  // Any other access is a fault of the calling thread; so is an exception in the function.
   std::int32_t call(void* first, const void* second, void* third) const;
 
 private:

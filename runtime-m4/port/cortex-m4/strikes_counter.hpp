@@ -1,5 +1,5 @@
-// SysTick on a board that has a counter besides it, of the core's clock or of a part of that, and a timer that ends the core's
-// sleep (hooks::set_alarm()). For tick.cpp. All of it under a SwitchLock.
+// SysTick on a board that also has a counter, of the core's clock or of a fraction of it, and a timer that ends the core's
+// sleep (hooks::set_alarm()). For tick.cpp. Call these functions under a SwitchLock.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace robosync::port::strikes {
 
 inline constexpr std::uint32_t kLongestSleep =
-    0x4000'0000;                        // counts; 32 bits must hold all that pass
+    0x4000'0000;                        // counts; with a late wake-up still within 32 bits
 inline constexpr unsigned kLooks = 64;  // SysTick is loaded within one count
 #if defined(ROBOSYNC_CORE_COUNTS)
 inline constexpr std::uint32_t kCoreCounts = ROBOSYNC_CORE_COUNTS;
@@ -20,8 +20,8 @@ inline constexpr std::uint32_t kCoreCounts = 1;
 #endif
 inline constexpr std::uint32_t kSysTickOff = 6, kSysTickOn = 7;  // core clock, with its interrupt
 
-// SysTick strikes after so many counts, and from then on at every tick. In two parts, because the length of
-// all but the first may only be said when that of the first is loaded.
+// begin() makes SysTick fire after `counts`, and go_on() at every tick from then on. There are two functions because
+// the reload value of the later periods may only be written after SysTick has loaded the first.
 inline void begin(std::uint32_t counts) {
   core::reg(core::kSystRvr) = counts * kCoreCounts - 1;
   core::reg(core::kSystCvr) = 0;
@@ -33,12 +33,12 @@ inline void go_on() {
   core::reg(core::kSystRvr) = hooks::kTickCounts * kCoreCounts - 1;
 }
 
-// The core is about to sleep: no strikes, and an alarm after so many counts.
+// The core is about to sleep: stops SysTick, and sets an alarm after `counts`.
 inline void sleep_for(std::uint32_t counts) {
   core::reg(core::kSystCsr) = kSysTickOff;
   hooks::set_alarm(counts);
 }
-// … and something has ended its sleep.
+// An interrupt has ended the core's sleep.
 inline void wake() {
   hooks::clear_alarm();
 }

@@ -16,23 +16,23 @@ constexpr Register kControl{core::kSystCsr};
 constexpr Register kReload{core::kSystRvr};
 constexpr Register kCurrent{core::kSystCvr};
 constexpr std::uint32_t kOn = 7;                 // core clock, with its interrupt
-constexpr std::uint32_t kBegunAgain = 1U << 16;  // since the flag was read
-// It is loaded within one count; an emulator may need its time.
+constexpr std::uint32_t kBegunAgain = 1U << 16;  // reached 0 since the last read of the flag
+// SysTick is loaded within one count; an emulator may take longer.
 constexpr unsigned kLooks = 100'000;
-// The counts between the reading of the clock in begin() and the write that it is corrected for.
+// Counts between reading the clock in restart() and the write to SysTick; restart() corrects for them.
 constexpr std::uint32_t kBetween = 12;
-// So many counts it takes at the most to say what comes behind the first strike.
+// After at most this many counts, restart() has set the period that follows the first one.
 constexpr std::uint32_t kShortest = 256;
 
-// The clock stands at `end` when SysTick comes to 0, which it does once in `period` counts.
+// The clock reads `end` when SysTick reaches 0, which happens once in `period` counts.
 std::uint32_t end = 0;
 std::uint32_t period = 0;
 std::uint32_t next_period = 0;
 bool sleeps =
-    true;  // begun for a sleep, or never; what ends its period is no tick's end before it was begun again
+    true;  // started for a sleep, or never: its period does not end with a tick until begin() restarts it
 
-// Alone. The order matters: when the flag is not set, it did not begin again before `left` was read. 0 is the first
-// state of a period, and stands for all of its counts.
+// Call under Alone. The order matters: if the flag is clear, SysTick had not reached 0 when `left` was read. 0 is the
+// first value of a period, when all of its counts are left.
 std::uint32_t read() {
   std::uint32_t left = kCurrent.read();
   if (kControl.has(kBegunAgain)) {
@@ -43,7 +43,7 @@ std::uint32_t read() {
   return end + left;
 }
 
-// A period of `counts`, and behind it periods of `then`. Alone.
+// Starts a period of `counts`, followed by periods of `then`. Call under Alone.
 void restart(std::uint32_t counts, std::uint32_t then) {
   const std::uint32_t now = read();
   kReload.write(counts - 1);
@@ -65,9 +65,9 @@ void begin(std::uint32_t counts) {
   sleeps = false;
 }
 
-// Behind the sleep the longest period stands, so that nothing is lost when the core wakes up late.
+// The longest period follows the sleep, so that no counts are lost if the core wakes up late.
 void sleep_for(std::uint32_t counts) {
-  if (counts <= hooks::kTickCounts) return;  // the next strike is what ends it
+  if (counts <= hooks::kTickCounts) return;  // the next tick ends the sleep
   const Alone alone;
   restart(counts, kLongestSleep);
   sleeps = true;

@@ -1,18 +1,18 @@
-// SysTick on a board that has nothing else: it strikes, it ends the core's sleep, and it is the clock. For tick.cpp. All of
-// it under a SwitchLock.
+// SysTick on a board that has no other counter: it makes the tick interrupts, ends the core's sleep, and is the clock. For
+// tick.cpp. Call these functions under a SwitchLock.
 //
-// SysTick counts 24 bits down, and begins again; what lies above is kept in memory, and a reading finds out from SysTick's
-// own flag whether it has begun again since the last one. So it must be read at least once in each of its
-// periods: SysTick's handler does, and nobody holds that off for a tick. While threads run it is never
-// written, so nothing is lost. To sleep for longer than a tick, and when something ends such a sleep early, it is begun
-// anew, which is exact but for a few counts.
+// SysTick counts down 24 bits and starts over. The upper bits of the clock are kept in memory: each read of the clock checks
+// SysTick's own flag, which tells whether SysTick has started over since the last read. So the clock must be read at least
+// once in each period: SysTick's handler does that, and no code holds it off for a tick. SysTick is not written while threads
+// run, so no counts are lost. It is restarted for a sleep longer than a tick, and after such a sleep, at the cost of an
+// error of a few counts.
 #pragma once
 
 #include <cstdint>
 
 namespace robosync::port::strikes {
 
-inline constexpr std::uint32_t kLongestSleep = 0x00FF'FFFF;  // counts; what SysTick can count
+inline constexpr std::uint32_t kLongestSleep = 0x00FF'FFFF;  // counts; the range of SysTick
 
 // As in strikes_counter.hpp.
 void begin(std::uint32_t counts);

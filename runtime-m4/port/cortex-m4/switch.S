@@ -1,6 +1,6 @@
 /* The context switch: PendSV, at the lowest priority, so it runs when no other handler does.
 
-   A thread that does not run leaves its registers on its own stack:
+   The registers of a thread that does not run are saved on its own stack:
 
        higher addresses
        | FPSCR, s0–s15           only if the thread used the FPU   } stacked by the core
@@ -10,24 +10,25 @@
        +-- Context::sp
 
    Saving may run into the guard below the stack: the instruction at robosync_saving_core or _fpu
-   then faults, fault.cpp stops the thread, and the switch goes on at robosync_saved.
+   then faults, fault.cpp stops the thread, and the switch continues at robosync_saved.
 
-   Bit 4 of EXC_RETURN is 0 if the thread used the FPU; storing s16 makes the core store s0–s15
-   first where it put that off.
+   Bit 4 of EXC_RETURN is 0 if the thread used the FPU. If the core has deferred stacking s0–s15,
+   storing s16 makes it stack them first.
 
-   Which thread comes next is Kernel::select_next(), here in registers: all that it reads stands together (kernel::Selection)
-   and is loaded by one instruction, before anything is decided by it. So whatever an interrupt makes ready after
-   that load is compared with a rank that is not above the one chosen here, and asks for another switch when it
-   is above.
+   The next thread is chosen as in Kernel::select_next(), but in registers. All that the choice reads is together
+   (kernel::Selection) and loaded by one instruction before the choice. So if an interrupt makes a thread ready after
+   that load, it compares the thread's rank with one that is not above the rank chosen here, and requests another
+   switch if the thread's rank is above it.
 
-   A thread's run time is what the free-running clock, which counts down, stood at when it began,
-   less what it stands at when it ends. Three instructions of each switch are for that, since the running thread's share stands
-   beside the pointer to it, and is loaded and stored with it; and a call where the clock takes one (clock.hpp).
+   A thread's run time is the value of the free-running clock, which counts down, when the thread
+   started, minus the value when it ends. This takes three instructions of each switch, because the running thread's
+   origin is next to the pointer to the thread, and is loaded and stored with it. Some boards add a call to read the
+   clock (clock.hpp).
 
-   A thread without privileges costs the others nothing. It leaves by a vector table of its
-   own, and what it saves as EXC_RETURN has bits 4 and 5 cleared, and bit 6 if it used the FPU: they
-   are told apart where the FPU is. A secluded one (ThreadSpec::data_bytes) begins as if it had used the
-   FPU, and so always has: it is told apart where that is known. */
+   Unprivileged threads cost the others nothing. They enter the switch through their own vector table.
+   The EXC_RETURN saved for them has bits 4 and 5 cleared, and bit 6 too if they used the FPU, so only
+   the FPU path of the restore has to test for them. A secluded thread (ThreadSpec::data_bytes) starts as
+   if it had used the FPU, so bit 6 is always cleared, and only the path for that tests for it. */
 
     .syntax unified
     .cpu    cortex-m4
@@ -41,7 +42,7 @@
     .equ    BY_RANK, 32             /* … ::by_rank_ */
     .equ    ALL_WRITE, 0x1302       /* upper half of core::kMpuAllWrite */
     .equ    SECLUDED, 1 << 22       /* Context::kSecluded */
-    .equ    ALL_RAM, 0x20000015     /* its base; region 5, which gives way to the stack's */
+    .equ    ALL_RAM, 0x20000015     /* RBAR: start of RAM, region 5; region 6, the stack, overrides it */
     .equ    CLOSED, 0x11020039      /* core::kMpuPrivileged, 512 MB */
     .equ    SWITCH_PRIORITY, 0xC0   /* core::kSwitchPriority */
 
@@ -82,7 +83,7 @@ robosync_saved:
 12: add     r5, r9, r6, lsl #2
     strb    r6, [r9, #RUNNING_RANK]
     ldr     r0, [r5, #BY_RANK]
-14: ldmia   r0, {r1-r3, r12}        /* the next one's Context: ::sp, ::run_time, ::region, ::windows */
+14: ldmia   r0, {r1-r3, r12}        /* the next thread's Context: ::sp, ::run_time, ::region, ::windows */
     adds    r2, r4
     strd    r0, r2, [r9]            /* running_, its origin */
     ldr     r6, =MPU_RASR
@@ -93,12 +94,12 @@ robosync_saved:
 1:  msr     psp, r1
     bx      lr
 
-10: cbz     r7, 15f                 /* none of the first word */
+10: cbz     r7, 15f                 /* none in the first word */
     clz     r6, r7
     adds    r6, #32
     b       11b
 15: clz     r6, r8
-    adds    r6, #64                 /* of an empty set: 96, where the idle thread stands */
+    adds    r6, #64                 /* for an empty set: 96, the index of the idle thread */
     b       11b
 
 13: ldrb    r7, [r9, #CEILING]      /* held_: a mutex */
@@ -117,7 +118,7 @@ robosync_saving_fpu:
     vldmia  r1!, {s16-s31}
     b       1b
 
-/* Into a thread without privileges: its window, its vector table, its rights. The base of the lower region (r3) is
+/* Into an unprivileged thread: set its window, its vector table and CONTROL. The base of the lower region (r3) is
    set already; r12 is Context::windows. */
 4:  tst     lr, #0x40
     beq     6f
@@ -126,7 +127,7 @@ robosync_saving_fpu:
 5:  ldr     r0, =MPU_RASR
     movt    r2, #ALL_WRITE
     pkhbt   r1, r12, r2
-    addw    r3, r3, #0x201          /* 512 bytes on, and the next number */
+    addw    r3, r3, #0x201          /* 512 bytes on, and the next region number */
     pkhtb   r12, r2, r12, asr #16
 9:  stmia   r0, {r1, r3, r12}
     ldr     r1, =robosync_unprivileged_vectors
@@ -146,7 +147,7 @@ robosync_saving_fpu:
     ldr     r12, =CLOSED
     b       9b
 
-/* Out of one: (psp), when there is room on its stack (PendSV_Unprivileged_Handler). */
+/* Out of an unprivileged thread: (psp), if there is room on its stack (PendSV_Unprivileged_Handler). */
     .thumb_func
 robosync_save_unprivileged:
     tst     lr, #0x10
@@ -166,15 +167,15 @@ robosync_saving_unprivileged_fpu:
     bic     lr, lr, #0x40
     b       8b
 
-/* When there is none: a fault in the name of the thread (fault.cpp). */
+/* If there is no room: a fault, attributed to the thread (fault.cpp). */
     .thumb_func
 robosync_no_room:
     udf     #0
     .pool
     .size   PendSV_Handler, . - PendSV_Handler
 
-/* void robosync_become_idle(stack top): what called becomes the idle thread, on that stack. It
-   sleeps, as tick.cpp says. */
+/* void robosync_become_idle(stack top): the caller becomes the idle thread, on that stack, and
+   sleeps as tick.cpp describes. */
     .section .text.robosync_become_idle, "ax"
     .global robosync_become_idle, robosync_idle_masks, robosync_idle_unmasks
     .type   robosync_become_idle, %function
@@ -185,7 +186,7 @@ robosync_become_idle:
     msr     control, r0
     isb
     movs    r0, #0
-    msr     basepri, r0             /* the switch that waits happens here */
+    msr     basepri, r0             /* the pending switch happens here */
 1:  movs    r0, #SWITCH_PRIORITY    /* a SwitchLock */
     msr     basepri_max, r0
     bl      robosync_set_alarm
@@ -193,7 +194,7 @@ robosync_idle_masks:
     cpsid   i
     movs    r0, #0
     msr     basepri, r0
-    wfi                             /* ends with any interrupt, which then waits for cpsie */
+    wfi                             /* any interrupt ends it, and is then held off until cpsie */
     bl      robosync_count_sleep
     movs    r0, #SWITCH_PRIORITY    /* a SwitchLock again */
     msr     basepri_max, r0

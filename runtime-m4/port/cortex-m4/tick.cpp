@@ -1,14 +1,13 @@
-// The kernel's time. How much of it has passed is said by the free-running clock alone; SysTick
-// only says when to look. So ticks that were late, or left out, are counted all the same, and
-// nothing drifts.
+// The kernel's time. The free-running clock alone tells how much time has passed; SysTick only tells
+// when to look. So ticks that are late or skipped are counted too, and time does not drift.
 //
-// While all threads wait there are no ticks: the idle thread (switch.S) stops SysTick, sets an
-// alarm for the tick at which the timers have something to do, and sleeps. Whatever wakes
-// it, the ticks that have passed are counted before any interrupt is let in, so no handler and no
-// thread ever sees an old time. Then, before any thread can run, the idle thread starts the ticks
-// again where they belong, and has SysTick's handler wake who is due.
+// While all threads are blocked there are no ticks: the idle thread (switch.S) stops SysTick, sets an
+// alarm for the tick at which the timers have work, and sleeps. Whatever wakes it, the ticks that have
+// passed are counted before any interrupt is taken, so no handler and no thread ever reads an old
+// time. Then, before any thread can run, the idle thread restarts SysTick in phase with the ticks, and
+// pends its handler, which wakes the threads that are due.
 //
-// SysTick never strikes before the clock says that the tick is over: it is set by kLate too late.
+// SysTick never fires before the clock says that the tick is over: it is set kLate counts late.
 #include "runtime-m4/port/cortex-m4/tick.hpp"
 
 #include <algorithm>
@@ -29,9 +28,9 @@ namespace {
 
 constexpr std::uint32_t kLate = 4;  // counts of the clock
 
-std::uint32_t counted_to = 0;  // the clock, at the latest tick that is counted; it counts down
+std::uint32_t counted_to = 0;  // the clock at the latest tick that has been counted
 
-// The ticks that have passed since they were last counted.
+// Counts and returns the ticks since the last call.
 [[gnu::noinline]] std::uint32_t count() {
   const std::uint32_t before = counted_to;
   const std::uint32_t ticks = (before - Machine::clock()) / hooks::kTickCounts;
@@ -39,7 +38,7 @@ std::uint32_t counted_to = 0;  // the clock, at the latest tick that is counted;
   return ticks;
 }
 
-// SysTick strikes at every tick, where the clock says that it is.
+// Starts SysTick, in phase with the ticks of the clock.
 void begin_to_strike() {
   const std::uint32_t over = std::min(counted_to - Machine::clock(), hooks::kTickCounts - 1);
   strikes::begin(hooks::kTickCounts - over + kLate);
@@ -56,25 +55,25 @@ extern "C" {
 [[gnu::cold]] void robosync_end_sleep();
 void SysTick_Handler();
 
-// Called by switch.S when the idle thread is about to sleep, under a SwitchLock.
+// switch.S calls this before the idle thread sleeps, under a SwitchLock,
 void robosync_set_alarm() {
   using namespace robosync::port;
   const std::uint32_t longest = strikes::kLongestSleep / hooks::kTickCounts;
   const std::uint32_t ticks = std::min(robosync_kernel.ticks_to_next_work(), longest);
   const std::uint32_t passed = counted_to - Machine::clock();
   const std::uint32_t counts = ticks * hooks::kTickCounts;
-  if (passed >= counts) return;  // SysTick strikes now
+  if (passed >= counts) return;  // SysTick fires now
   strikes::sleep_for(counts - passed + kLate);
 }
 
-// … when it was woken, before interrupts are let in: the tick is due, too …
+// this after the sleep, before interrupts are taken (it pends the tick),
 void robosync_count_sleep() {
   using namespace robosync::port;
   robosync_kernel.pass(count());
   core::reg(core::kIcsr) = core::kIcsrSysTickSet;
 }
 
-// … and then, under a SwitchLock. What it has to do while SysTick loads is done meanwhile.
+// and then this, under a SwitchLock. strikes::wake() runs while SysTick loads.
 void robosync_end_sleep() {
   using namespace robosync::port;
   begin_to_strike();

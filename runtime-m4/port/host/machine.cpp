@@ -16,40 +16,40 @@ namespace {
 
 constexpr std::size_t kFiberStack = std::size_t{128} * 1024;
 
-// Whose switch is under way: makecontext cannot pass it to a new fiber.
+// The machine that is switching: makecontext cannot pass it to a new fiber.
 thread_local Machine* switching = nullptr;
 
-// Neither swapcontext(), which makes a system call to keep the signals' mask, nor longjmp(), at which
-// AddressSanitizer forgets what must not be touched on the stack that is left: gcc's manual, "Nonlocal gotos".
+// Avoids swapcontext(), which makes a system call to save the signal mask, and longjmp(), which makes AddressSanitizer
+// unpoison the stack that is left. The builtins: gcc's manual, "Nonlocal gotos".
 [[gnu::noinline, gnu::no_sanitize_address]] void go_on_with(Context& to) {
   if (to.has_run) __builtin_longjmp(to.registers.data(), 1);
   to.has_run = true;
   setcontext(&to.begin);
 }
 
-// Comes back when somebody goes on with `from`.
+// Returns when a switch continues `from`.
 [[gnu::noinline, gnu::no_sanitize_address]] void exchange(Context& from, Context& to) {
   from.has_run = true;
   if (__builtin_setjmp(from.registers.data()) == 0) go_on_with(to);
 }
 
-// Tells AddressSanitizer that the program moves to the stack of `to`. A null `keep` gives up the
-// stack it leaves.
+// Tells AddressSanitizer that the program moves to the stack of `to`. A null `keep` abandons the stack
+// that it leaves.
 void announce_switch([[maybe_unused]] void** keep, [[maybe_unused]] const Context& to) {
 #if defined(ROBOSYNC_SANITIZE)
   __sanitizer_start_switch_fiber(keep, to.stack_bottom, to.stack_bytes);
 #endif
 }
 
-// … that nothing is on a stack any more: frames that nobody returned from are still noted there.
+// Tells it that a stack is empty: frames that never returned are still marked there.
 void announce_empty([[maybe_unused]] const Context& context) {
 #if defined(ROBOSYNC_SANITIZE)
   __asan_unpoison_memory_region(context.stack_bottom, context.stack_bytes);
 #endif
 }
 
-// … and that it has arrived: `kept` is what announce_switch kept when this stack was left, null on
-// its first run. Notes where the stack lies from which it came.
+// Tells it that the program has arrived. `kept` is what announce_switch kept when this stack was left,
+// null on its first run. Stores the bounds of the stack that it came from.
 void announce_arrival([[maybe_unused]] void* kept, [[maybe_unused]] Context& came_from) {
 #if defined(ROBOSYNC_SANITIZE)
   __sanitizer_finish_switch_fiber(kept, &came_from.stack_bottom, &came_from.stack_bytes);
@@ -84,7 +84,7 @@ std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t a
     {
       const auto lock = kernel.lock_interrupts();
       kernel.answer(call);
-    }  // here it blocks
+    }  // it blocks here
     if (!call.repeats()) return call.result();
   }
 }
@@ -110,7 +110,7 @@ void Machine::enter_fiber() {
   kernel_.stop(self);  // switches away for good
 }
 
-// Runs the highest ready thread; returns when the thread that called (or idle) is it again.
+// Switches to the highest ready thread; returns when the calling thread (or idle) runs again.
 void Machine::switch_now() {
   switch_requested_ = false;
   kernel::Thread& left = kernel_.current();

@@ -1,10 +1,10 @@
 // The host as a machine for the kernel: threads are fibers (ucontext), time is virtual.
 //
-// A switch happens where the firmware would take PendSV: at the end of the outermost Lock, so a
-// signal to a thread of higher rank runs it at once. Nothing preempts between kernel calls, and
-// time stands still while a thread runs: it jumps from deadline to deadline when all are blocked.
-// So a run depends on its inputs only. Several machines may live in one process; each belongs to
-// the OS thread that runs it.
+// A switch happens where the firmware would take PendSV: at the end of the outermost Lock, so
+// signalling a thread of higher rank runs it immediately. Nothing preempts between kernel calls. Time
+// stands still while a thread runs, and jumps to the next deadline when all threads are blocked. So a
+// run depends on its inputs only. One process may have several machines; each belongs to the OS thread
+// that runs it.
 #pragma once
 
 #include <array>
@@ -25,13 +25,13 @@ namespace robosync::port {
 
 inline constexpr bool kTimeFlows = false;
 inline constexpr std::size_t kStackAlignment = 8;
-inline constexpr std::size_t kMinStack = 0;     // a fiber has a host-sized stack of its own
-inline constexpr std::size_t kArenaScale = 16;  // of pointers, and of what a fiber keeps
+inline constexpr std::size_t kMinStack = 0;     // a fiber has its own host-sized stack
+inline constexpr std::size_t kArenaScale = 16;  // for larger pointers and the fibers' state
 inline constexpr std::size_t kUnprivilegedStackAlignment = 64;  // as on the board
 inline constexpr std::size_t kMaxUnprivilegedStack = 576;
 inline constexpr std::size_t kSecludedStack = 1024;
 
-// Nothing is closed here.
+// The host closes no memory.
 struct Areas {
   std::span<const std::byte> readable;
   std::span<std::byte> writable;
@@ -39,14 +39,14 @@ struct Areas {
 
 struct Context {
   union {
-    ucontext_t begin{};              // until it has run
-    std::array<void*, 5> registers;  // with which it goes on
+    ucontext_t begin{};              // until it first runs
+    std::array<void*, 5> registers;  // saved when it is switched out
   };
   bool has_run = false;
   std::unique_ptr<std::byte[]> stack;
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
-  // For AddressSanitizer, which must know on which stack the program is.
+  // For AddressSanitizer, which must know which stack is in use.
   void* sanitizer_stack = nullptr;
   const void* stack_bottom = nullptr;
   std::size_t stack_bytes = 0;
@@ -54,7 +54,7 @@ struct Context {
 
 struct RunClock {};
 
-// A call as any other.
+// An ordinary call.
 class Sandbox {
 public:
   using Function = std::int32_t (*)(void*, const void*, void*);
@@ -114,13 +114,12 @@ public:
   static void grant(const Areas&) {}
   static std::span<std::byte> prepare_idle(Context&) { return {}; }  // it is the caller
 
-  // Runs threads until all are blocked and the next deadline lies after `until` (kernel::Time); then now() is
-  // `until`, rounded down to a tick. Call it again to go on; `until` in the past only runs
-  // what is ready. With kForever: until no thread has a
-  // deadline. Not from a thread.
+  // Runs threads until all are blocked and the next deadline is after `until` (kernel::Time). Then
+  // now() is `until`, rounded down to a tick. Call it again to continue; if `until` is in the past, it
+  // runs only the ready threads. With kForever: until no thread has a deadline. Not from a thread.
   void run_until(std::uint64_t until);
-  // Makes run_until() return as soon as all threads are blocked, without moving the time on.
-  // [a thread, or between two run_until()]
+  // Makes run_until() return as soon as all threads are blocked, without advancing the time.
+  // [from a thread; between two calls of run_until() it has no effect]
   void stop() { stop_requested_ = true; }
 
 private:
@@ -132,8 +131,8 @@ private:
   void switch_now();
 
   kernel::Kernel& kernel_;
-  Context* from_ = nullptr;  // who switched to the running fiber
-  unsigned lock_depth_ = 0;  // of both kinds
+  Context* from_ = nullptr;  // what switched to the running fiber
+  unsigned lock_depth_ = 0;  // of both kinds of lock
   unsigned interrupt_locks_ = 0;
   bool switch_requested_ = false;
   bool on_fiber_ = false;
@@ -163,14 +162,14 @@ protected:
   Machine& machine_;
 };
 
-// There are no interrupts: the difference is for assertions.
+// There are no interrupts: Lock differs from SwitchLock for the assertions only.
 class Lock : private SwitchLock {
 public:
   explicit Lock(const Machine& machine) : SwitchLock(machine) { ++machine_.interrupt_locks_; }
   ~Lock() { --machine_.interrupt_locks_; }
 };
 
-// Straight to the kernel: there are no privileges.
+// Calls the kernel directly: the host has no privileges.
 std::uint32_t call(kernel::Kernel& kernel, std::uint32_t number, std::uint32_t argument);
 void stop_overrun(kernel::Kernel& kernel, kernel::Thread& thread);
 using OnlyLock = Lock;
