@@ -13,13 +13,13 @@
 namespace robosync::guard {
 namespace {
 
-constexpr unsigned kLongestStep = 20;  // milliseconds that one change may make up for
+constexpr unsigned kLongestStep = 20;  // ms; a change of pulse covers no more time than this
 
 constexpr OutputGuard::Mask bit(unsigned actuator) {
   return OutputGuard::Mask{1} << actuator;
 }
 
-// No chip is told a pulse that no servo takes.
+// The limits for channels of servo chips: the pulses of hobby servos.
 constexpr policy::PinLimit kOnChips{
     .first = 0,
     .last = vm::kChipChannels - 1,
@@ -28,7 +28,7 @@ constexpr policy::PinLimit kOnChips{
     .rise = 0,
 };
 
-// Calls take(actuator) for each. The loop looks at its end.
+// Calls take(actuator) for each actuator of the mask. The loop tests at its end, which is faster.
 template <class Take>
 [[gnu::always_inline]] inline void each_of(OutputGuard::Mask actuators, Take take) {
   if (actuators == 0) return;
@@ -38,19 +38,19 @@ template <class Take>
   } while (actuators != 0);
 }
 
-// 0 is off, and always may be.
+// 0 is off, and always allowed.
 std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
   if (pulse_us == 0) return 0;
   return static_cast<std::uint16_t>(
       std::clamp<std::uint32_t>(pulse_us, limit.shortest, limit.longest));
 }
 
-// Its pin, or its line.
+// The actuator's pin or serial line.
 constexpr std::uint16_t place_of(const vm::Actuator& actuator) {
   return vm::drives_player(actuator.driver) ? actuator.bus : actuator.pin;
 }
 
-// Is it an output of an actuator, or of a sensor, or let go for one?
+// Is the pin an output of an actuator or a sensor, or released for a sensor?
 bool has_pin(const vm::Image& image, std::uint16_t pin) {
   const bool drives = std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
     return vm::drives_pin(actuator.driver) &&
@@ -74,7 +74,7 @@ constexpr bool is_on_panel(vm::DriverId driver) {
 
 }  // namespace
 
-// Does a driver's order reach it?
+// Does a driver's order reach the actuator?
 [[gnu::always_inline]] inline bool OutputGuard::is_free(unsigned actuator) const {
   return (free_ & bit(actuator)) != 0;
 }
@@ -85,7 +85,7 @@ void OutputGuard::exchange(Slot& slot) {
   slot.second = !slot.second;
 }
 
-// Does the program drive what `slot` has, in the same way? Pulses for a servo are power for a motor.
+// Does the program drive the pins of `slot` in the same way? A servo's pulse would be power to a motor.
 bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   const std::uint16_t first = slot.second ? slot.other : slot.pin;
   const std::uint16_t second = slot.second ? slot.pin : slot.other;
@@ -116,7 +116,7 @@ void OutputGuard::let_go_of(Pins measured) {
   let_go_ |= measured;
 }
 
-// Their pins are nobody's then.
+// Their pins are unused afterwards.
 void OutputGuard::end_measurements() {
   const auto lock = kernel_.lock();
   for (const vm::Sensor& sensor : sensors_)
@@ -133,8 +133,8 @@ void OutputGuard::ping(unsigned sensor) {
     board_.ping(wiring.bus, wiring.address);
 }
 
-// Pins that `next` does not drive in the same way. Nobody drives any of them meanwhile, not even to its safe state, which
-// was that of another actuator.
+// Turns off the pins that `next` does not drive in the same way. Meanwhile nothing drives any pin, not even to its safe state,
+// because that would be the safe state of another actuator.
 void OutputGuard::switch_off(const vm::Image* next) {
   Mask owned = 0;
   {
@@ -210,7 +210,7 @@ void OutputGuard::own(const vm::Image& image) {
   make_halted_safe(kernel_.now());
 }
 
-// Of a program that comes: a halt found its pins with the one before, or none at all. Lights and speaker are off.
+// For a new program: its halted actuators did not own their pins yet when they were halted. Lights and speaker are off.
 void OutputGuard::make_halted_safe(kernel::Time now) {
   for (Mask left = owned_ & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
@@ -219,7 +219,7 @@ void OutputGuard::make_halted_safe(kernel::Time now) {
   }
 }
 
-// The outputs of `actuator` are the board's.
+// The pins of `actuator` must be outputs of the board.
 OutputGuard::Slot OutputGuard::slot_of(const vm::Actuator& actuator,
                                        const policy::BoardPins& pins) const {
   const policy::PinLimit& limit = *policy::limit_of(pins, actuator.pin);
@@ -301,7 +301,7 @@ void OutputGuard::play(unsigned actuator, std::uint16_t sound) {
   settle(slot, actuator, within(limits_[slot.limit], length), now);
 }
 
-// To the other pin: this one goes off first.
+// Changes to the other pin, after turning this one off.
 void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
   board_.pwm_write(slot.pin, 0);
   exchange(slot);
@@ -310,7 +310,7 @@ void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
   limits_[slot.limit].rise != 0 ? gradual_ |= bit(actuator) : gradual_ &= ~bit(actuator);
 }
 
-// `pulse` is inside the limits.
+// `pulse` must be within the limits.
 [[gnu::always_inline]] inline void OutputGuard::settle(Slot& slot, unsigned actuator,
                                                        std::uint16_t pulse, kernel::Time now) {
   slot.target = pulse;
@@ -332,7 +332,7 @@ void OutputGuard::go_on(kernel::Time now) {
   }
 }
 
-// As far towards the target as the pin may change by now.
+// Moves the pulse as far towards its target as the time since the last write allows.
 [[gnu::noinline]] void OutputGuard::put(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
   const policy::PinLimit& limit = limits_[slot.limit];
@@ -341,7 +341,7 @@ void OutputGuard::go_on(kernel::Time now) {
   board_.pwm_write(slot.pin, slot.pulse);
 }
 
-// Power may fall at once, and what gives pulses may begin anywhere: nobody knows where the thing stands.
+// Power may fall immediately. Servo pulses may stop immediately, and start anywhere, because the position is unknown then.
 std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulses,
                                       kernel::Time now) const {
   const auto at = static_cast<std::uint16_t>(now / 1000);
@@ -356,8 +356,8 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
   return static_cast<std::uint16_t>(std::max(target, pulse - std::min(pulse, most)));
 }
 
-// The mask comes first: from then on no driver can undo what follows. The lock holds off the switch alone, and who
-// halts several at once is the safety thread, which nobody waits for.
+// Sets the mask first: from then on no driver can undo what follows. The lock only holds off thread switches, so it delays no
+// thread that outranks the safety thread, which is the one that halts several actuators in one call.
 [[gnu::noinline]] void OutputGuard::halt(Mask actuators) {
   const auto lock = kernel_.lock();
   const Mask fresh = actuators & owned_ & ~halted_;
@@ -372,7 +372,8 @@ std::uint16_t OutputGuard::next_pulse(Slot& slot, std::uint16_t rise, bool pulse
     make_all_safe(others, kernel_.now());
 }
 
-// One that has a pulse for its safe state, and may change at once: so its target is its pulse. A pin that is off stays off.
+// For an actuator whose safe state is a pulse, and whose pulse may change immediately: so its target is its pulse. A pin that is
+// off stays off.
 [[gnu::always_inline]] inline void OutputGuard::shut(Slot& slot) {
   if (slot.pulse == 0) return;
   slot.pulse = slot.target = slot.safe;
@@ -404,7 +405,7 @@ void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
   return (on_chips_ & bit(actuator)) != 0;
 }
 
-// The image is verified and fits the board. Nobody knows what its chips do, so they are off.
+// The image must be verified and fit the board. The state of its chips is unknown, so they are off.
 void OutputGuard::own_chips(const vm::Image& image) {
   for (unsigned s = 0; s < image.sensors.size() && chip_count_ < chips_.size(); ++s) {
     const vm::Sensor& sensor = image.sensors[s];
@@ -437,7 +438,7 @@ auto* OutputGuard::chip_of(Guard& guard, unsigned sensor) {
   return static_cast<decltype(chip)>(nullptr);
 }
 
-// What is off stays off: each of its servos waits for its next order.
+// Each servo of the chip stays off until its next order.
 void OutputGuard::switch_chip_off(Chip& chip) {
   board_.enable(chip.enable, false);
   chip.on = false;
@@ -446,7 +447,7 @@ void OutputGuard::switch_chip_off(Chip& chip) {
     slots_[static_cast<unsigned>(std::countr_zero(left))].pulse = 0;
 }
 
-// Of a program that goes.
+// Turns off the chips of a program that ends.
 void OutputGuard::switch_chips_off() {
   const auto lock = kernel_.lock();
   for (unsigned c = 0; c < chip_count_; ++c)
@@ -460,7 +461,7 @@ void OutputGuard::begin_order(unsigned actuator) {
   limp_ &= ~bit(actuator);
 }
 
-// The others of the chip go limp as well: it has one pin.
+// All servos of a chip go limp, because it has one enable pin.
 [[gnu::noinline]] void OutputGuard::halt_chips(Mask fresh) {
   for (unsigned c = 0; c < chip_count_; ++c)
     if ((chips_[c].actuators & fresh) != 0 && !chips_[c].holds) switch_chip_off(chips_[c]);
@@ -513,7 +514,7 @@ void OutputGuard::note_setpoint(const Setpoint& setpoint) {
     slots_[setpoint.actuator].target = setpoint.pulse;
 }
 
-// A halt may have come since the chip was told its pulses: then there is something to be told again.
+// A halt may have changed setpoints after the chip got them. Then the chip stays off until it has the new ones.
 void OutputGuard::let_chip_on(unsigned sensor) {
   const auto lock = kernel_.lock();
   Chip* const chip = chip_of(*this, sensor);
@@ -532,7 +533,7 @@ void OutputGuard::let_chip_on(unsigned sensor) {
 
 // --- displays ---
 
-// The image is verified.
+// The image must be verified.
 void OutputGuard::own_displays(const vm::Image& image) {
   for (unsigned a = 0; a < image.actuators.size() && display_count_ < displays_.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
@@ -561,9 +562,9 @@ OutputGuard::Screen* OutputGuard::screen_of(unsigned sensor) {
   return nullptr;
 }
 
-// --- what is told: players, and the panel ---
+// --- devices that are told their orders: players and the panel ---
 
-// Nobody knows what it plays or shows: it is silent or dark, unless it gets something before it is told.
+// It is unknown what the device plays or shows: it is told to be silent or dark, unless an order comes first.
 void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
   const auto now = static_cast<std::uint16_t>(kernel_.now() / 1000);
   Slot& slot = slots_[actuator];
@@ -582,8 +583,8 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
   apart_ |= bit(actuator);
 }
 
-// Unless it still needs time after what it was told last. A picture is long: nobody else is kept waiting while it is written, and
-// who calls this is the safety thread, which nobody interrupts who could change it.
+// Sends the order, unless the device still needs time after the previous one. Sending a picture takes long, so no lock is held
+// meanwhile. That is safe: the safety thread calls this, and nothing that preempts it changes the picture.
 [[gnu::noinline]] void OutputGuard::tell(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
   const bool panel = is_on_panel(slot.driver);
@@ -603,7 +604,7 @@ void OutputGuard::say(const Slot& player, std::uint16_t sound) {
   board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
 }
 
-// Its picture goes with it, when there was one: something else is wired there.
+// If the next program has another use for the panel's pin, the panel's picture goes too: something else is wired there.
 void OutputGuard::free_panel_pin(const vm::Image& next) {
   if (panel_pin_ == kNoPin || !has_pin(next, panel_pin_)) return;
   board_.panel().end();

@@ -1,9 +1,9 @@
-// Policy of adaptive priorities (the paper's ΔP = α·F/W): what a behaviour is worth after a window
+// Policy of adaptive priorities (the paper's ΔP = α·F/W): the priority of a behaviour after a window
 // in which it was triggered F times. Pure, whole numbers only, so host and board agree.
 //
-// The result is worked out from the base each time, never from the last result: a behaviour that
-// calms down is back where it was written one window later, and none drifts to the cap. Safety is
-// beyond all priorities (standing.hpp), whatever the cap.
+// The result is computed from the base each time, never from the last result. So a behaviour that
+// calms down returns to its written priority one window later, and none drifts to the cap. Safety
+// ranks above all priorities (standing.hpp), whatever the cap.
 #pragma once
 
 #include <algorithm>
@@ -17,21 +17,21 @@ namespace robosync::policy {
 struct AdaptationRule {
   std::uint16_t alpha = 0;  // thousandths; 0: every behaviour keeps its base
   std::uint16_t window_ms = 1;
-  std::int8_t cap = 0;  // nobody is raised beyond it; who is written above it stays there
+  std::int8_t cap = 0;  // highest priority after a raise; a base above it is kept
 };
 
-// Of a program; without one, all keep their base.
+// The rule of a program; without one, all behaviours keep their base.
 inline AdaptationRule adaptation_of(const vm::Image& image) {
   if (image.adaptations.empty()) return {};
   const vm::Adaptation& wiring = image.adaptations.front();
   return {wiring.alpha, wiring.window_ms, static_cast<std::int8_t>(wiring.cap)};
 }
 
-// F as it is counted: what does not fit counts as the most. The product with alpha fits in 32 bits.
+// F, saturating at kMostTriggers. The product with alpha fits in 32 bits.
 using TriggerCount = std::uint16_t;
 inline constexpr TriggerCount kMostTriggers = 0xFFFF;
 
-// The most that a behaviour with this base can be worth.
+// The highest priority that a behaviour with this base can get.
 constexpr std::int8_t ceiling(std::int8_t base, std::int8_t cap) {
   return std::max(base, cap);
 }

@@ -1,6 +1,6 @@
-// What a step concerns: the inputs that the code of a rule reads or sets. Pure; the runtime makes
-// its index from inputs to rules of it (layers/loaded_program.cpp), analysis/ the same in its own shape.
-// layers/processing.cpp says why the rules that a step does not concern may be left out. Images are
+// What a step concerns: the inputs that the code of a rule reads or sets. Pure. The runtime builds its
+// index from inputs to rules with it (layers/loaded_program.cpp); analysis/ builds its own.
+// layers/processing.cpp explains why a step may skip the rules that it does not concern. Images are
 // verified.
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace robosync::policy {
 
-// By opcode, bit i: operand i is a cell that may be an input. vm::kOpcodes has the documentation
-// too, which is not for the board.
+// By opcode, bit i: operand i is a cell that may be an input. A separate table, because vm::kOpcodes
+// also contains the documentation, which the board does not store.
 inline constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kInputOperands = [] {
   std::array<std::uint8_t, vm::kOpcodes.size()> inputs{};
   for (std::size_t op = 0; op < inputs.size(); ++op) {
@@ -26,7 +26,7 @@ inline constexpr std::array<std::uint8_t, vm::kOpcodes.size()> kInputOperands = 
   return inputs;
 }();
 
-// Calls take(input) for each input that the code reads or sets, as often as it does.
+// Calls take(input) each time the code reads or sets an input.
 template <class Take>
 void each_input(const vm::Image& image, const vm::Behavior& behavior, std::uint16_t start,
                 std::uint16_t length, Take take) {
@@ -46,7 +46,7 @@ void each_input_of_condition(const vm::Image& image, const vm::Behavior& behavio
   each_input(image, behavior, rule.condition_start, rule.condition_length, take);
 }
 
-// Those of its responses as well: they stir the behaviour, for responses that wait.
+// Includes the inputs of its responses: they concern the behaviour too, for responses that wait.
 template <class Take>
 void each_input_of_rule(const vm::Image& image, const vm::Behavior& behavior, const vm::Rule& rule,
                         Take take) {

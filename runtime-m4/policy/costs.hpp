@@ -1,6 +1,6 @@
-// What things cost on the board, from the lists that declare it: the runtime (costs.def), the board
+// Costs on the board, from the lists that declare them: the runtime (costs.def), the board
 // (board_costs.def and boards/NAME/costs.def), the drivers (vm/drivers.def). All are executed
-// Cortex-M4 instructions, but for microseconds (_us). What is not declared does not compile.
+// Cortex-M4 instructions, except for microseconds (_us). A cost that is not declared does not compile.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace costs {
 #undef COST
 }  // namespace costs
 
-// A figure that somebody has to declare: there is none by default.
+// A number that must be declared: it has no default.
 class Declared {
 public:
   constexpr Declared(std::uint32_t value) : value_(value) {}  // NOLINT(google-explicit-constructor)
@@ -39,13 +39,13 @@ struct BoardCosts {
   }
 };
 
-// What an actuator driver's calls cost.
+// The costs of an actuator driver's calls.
 struct ActuatorCosts {
   std::uint32_t start, advance, release;
-  bool at_once;  // a command may be done as soon as it has begun
+  bool at_once;  // a command may end as soon as it has begun
 };
 
-// One sample of one channel; 0 of an actuator's driver.
+// The cost of one sample of one channel; 0 for an actuator's driver.
 constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board) {
   const auto fed = [] { return std::uint32_t{0}; };
   const auto computed = [] { return std::uint32_t{0}; };
@@ -72,7 +72,7 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
   return 0;
 }
 
-// Its transfers, asked for ahead.
+// The cost of requesting the transfers of one sample ahead.
 constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
   BoardCosts asking = board;
   asking.i2c_transfer = board.i2c_ask;
@@ -80,8 +80,8 @@ constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
   return vm::is_on_i2c(driver) ? sample_cost(driver, asking) : 0;
 }
 
-// How long the transfers of one sample keep their bus busy, in microseconds, where it works by itself; else 0. Of what is served
-// it is one transfer: it asks for the next one when that is over.
+// How long the transfers of one sample occupy their bus, in microseconds, if the bus works on its own; else 0. For a served
+// device it is one transfer: the next one is requested when that is over.
 constexpr std::uint32_t bus_us(const vm::Sensor& sensor, const BoardCosts& board) {
   if (!vm::is_on_i2c(sensor.driver)) return 0;
   BoardCosts times = board;
@@ -91,8 +91,8 @@ constexpr std::uint32_t bus_us(const vm::Sensor& sensor, const BoardCosts& board
   return sample_cost(sensor.driver, times) * (once ? 1 : sensor.channel_count);
 }
 
-// Of a servo chip a sample is its longest transfer. In a frame it is asked how it stands, and given the pulse of each of its
-// `servos`; it must be set up more rarely.
+// The cost of a servo chip's frame. Its sample cost is that of its longest transfer. In a frame the chip's state is read, and the
+// pulse of each of its `servos` is written; setting the chip up is rarer.
 constexpr std::uint32_t frame_cost(std::uint32_t servos, const BoardCosts& board) {
   constexpr std::uint32_t kAsked = 4;  // bytes, with two addresses
   const std::uint32_t waits = board.i2c_ask == 0 ? 0 : (1 + servos) * board.wake_by_timer;
@@ -100,7 +100,7 @@ constexpr std::uint32_t frame_cost(std::uint32_t servos, const BoardCosts& board
          servos * (sample_cost(vm::DriverId::pca9685, board) + board.i2c_ask);
 }
 
-// Of a display a sample is its longest transfer, of which there are kDisplayPortions in a frame at most.
+// The cost of a display's frame, which has at most kDisplayPortions transfers. Its sample cost is that of the longest one.
 inline constexpr std::uint32_t kDisplayPortions = 8;
 constexpr std::uint32_t display_frame_cost(const BoardCosts& board) {
   const std::uint32_t wait = board.i2c_ask == 0 ? 0U : std::uint32_t{board.wake_by_timer};
@@ -126,7 +126,7 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   return {};
 }
 
-// A sensor's driver either is not sampled (threads.hpp: is_fed(), is_algorithm()), or costs something.
+// A sensor's driver is either not sampled (threads.hpp: is_fed(), is_algorithm()), or has a cost.
 inline constexpr BoardCosts kOneEach = {
 #define BOARD_COST(name, doc) .name = 1,
 #include "runtime-m4/policy/board_costs.def"

@@ -1,15 +1,14 @@
-// What a program needs of a board's memory, worked out from its image. Pure; the board lays its
-// memory out by it (layers/memory.hpp) and refuses what does not fit, and rsc says the same before.
+// The memory that a program needs on a board, computed from its image. Pure. The board lays out its
+// memory with it (layers/memory.hpp) and refuses programs that do not fit; rsc reports the same earlier.
 //
-// A board has one piece of memory for programs, its arena. From its beginning up, and from its end
-// down:
+// A board has one block of memory for programs, its arena. It is filled from both ends:
 //
 //   | open parts | image | writable parts |    room for the next image    | closed parts |
 //
-// Open is what the behaviours' threads read; the image belongs to it. The MPU opens memory in
-// eighths of powers of two (regions.hpp), so that the writable parts begin and end where an eighth
-// does, and the region over what is open may reach into the room, but never into what is closed.
-// What that wastes is counted, as the arena's address is known. Images are verified.
+// The behaviours' threads may read the open parts and the image. The MPU opens memory in eighths of
+// powers of two (regions.hpp). So the writable parts begin and end at an eighth, and the region that
+// covers the open parts may extend into the room, but never into the closed parts. The wasted bytes
+// are counted, because the arena's address is known. Images are verified.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@
 
 namespace robosync::policy {
 
-// What a board has for programs: stdlib/boards/NAME.json.
+// What a board provides for programs: stdlib/boards/NAME.json.
 struct BoardMemory {
   std::uint32_t arena_begin = 0;  // its address
   std::uint32_t arena_bytes = 0;
@@ -37,22 +36,22 @@ struct BoardMemory {
 // The safety monitor, the link and the step.
 inline constexpr unsigned kFixedThreads = 3;
 
-// Stacks, in bytes, guard included: what the deepest way through the linked code takes, and what an
-// interrupt puts on top of it, fits on every board (tests/e2e/test_stack_depth.py).
+// Stacks, in bytes, including the guard. On every board they hold the deepest call path of the linked
+// code plus the frame of an interrupt (tests/e2e/test_stack_depth.py).
 inline constexpr std::uint32_t kSensorStack = 576;
 inline constexpr std::uint32_t kStepStack = 704;
 inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard
 inline constexpr std::uint32_t kControlStack = 448;
-// Of an algorithm, with its module's data: a region of its own. So much of it is the module's stack at least.
+// An algorithm has its own region, for its module's data and stack. At least kModuleStack bytes of it are stack.
 inline constexpr std::uint32_t kAlgorithmStack = 1024;
 inline constexpr std::uint32_t kModuleStack = 768;
-inline constexpr std::uint32_t kStackUnit = 64;  // without privileges
-// Of SAFETY's bytecode, and the machine that runs it.
+inline constexpr std::uint32_t kStackUnit = 64;  // of unprivileged stacks
+// For SAFETY's bytecode, and the machine that runs it.
 inline constexpr std::uint32_t kSafetyStack = 160;
 inline constexpr std::uint32_t kSafetyMachine = 64;
 
 inline constexpr std::uint32_t kMaxQueued = 8;  // commands that wait for one actuator
-// … and for all: so many, and more for each actuator.
+// Commands that wait for all actuators: kCommands, and kCommandsEach more per actuator.
 inline constexpr std::uint32_t kCommands = 16;
 inline constexpr std::uint32_t kCommandsEach = 2;
 inline constexpr std::uint32_t kFeeds = 40;  // readings that wait for their time
@@ -61,19 +60,19 @@ inline constexpr unsigned kTriggerSets = 3;
 inline constexpr unsigned kRunningSets = 4;
 inline constexpr unsigned kSides = 2;  // of a rule: DO and ELSE
 
-// Words of a set of rules (layers/rule_set.hpp): one bit a rule.
+// Words of a set of rules (layers/rule_set.hpp): one bit per rule.
 constexpr std::uint32_t set_words(std::uint32_t rules) {
   return (rules + 31) / 32;
 }
-// … and of one by input, of which there are many: where it has several words, one more stands before
-// them, which says which of them are not 0.
+// Words of the set of rules that is kept per input. If it has several words, a summary word precedes
+// them, which tells which of them are not 0.
 constexpr std::uint32_t reader_words(std::uint32_t rules) {
   const std::uint32_t words = set_words(rules);
   return words > 1 ? 1 + words : words;
 }
 
-// What the masks and sets of the layers can hold: bits of a word (layers/messages.hpp), and a summary
-// of so many words (layers/rule_set.hpp).
+// The limits of the layers' masks and sets: the bits of a word (layers/messages.hpp), and 32 words
+// under a summary word (layers/rule_set.hpp).
 inline constexpr unsigned kMaxChannels = 32;
 inline constexpr unsigned kMaxVariables = 32;
 inline constexpr unsigned kMaxRules = 32 * 32;
@@ -101,8 +100,8 @@ enum class Count : std::uint32_t {
   safety_bytes,
   tripped_words,
   rules,
-  watching_rules,  // all of them when one is a WATCH, otherwise none
-  delaying_rules,  // … has delays
+  watching_rules,  // all rules if one is a WATCH, otherwise none
+  delaying_rules,  // all rules if one has delays, otherwise none
   delays,
   set_words,
   reader_words,
@@ -126,8 +125,8 @@ private:
   std::array<std::uint32_t, static_cast<std::size_t>(Count::count_)> counts_{1};
 };
 
-// Words of the timer memory that SAFETY rules have: the first ones, as timers are numbered as they
-// stand in the code and SAFETY's code stands first.
+// Words of timer memory that SAFETY rules use. They are the first ones, because timers are numbered in
+// the order of the code, and SAFETY's code comes first.
 inline unsigned safety_timer_words(const vm::Image& image) {
   unsigned words = 0;
   const vm::Behavior& safety = image.behaviors[vm::kSafetyBehavior];
@@ -140,7 +139,7 @@ inline unsigned safety_timer_words(const vm::Image& image) {
   return words;
 }
 
-// What SAFETY's bytecode writes is one window, behind what ends at a multiple of kStackUnit.
+// SAFETY's bytecode writes to one window. The parts before it end at a multiple of kStackUnit.
 constexpr regions::Fit safety_window(const Counts& counts) {
   return regions::fit_anywhere(kSafetyStack + kSafetyMachine +
                                4 * (counts[Count::safety_cells] +
@@ -245,7 +244,7 @@ enum class Part : std::uint8_t {
 
 inline constexpr std::uint32_t kThreadBytes = 72;
 
-// Packed, as the board has the table, too.
+// Packed, because the table is also on the board.
 struct PartInfo {
   Region region : 2;
   Whose whose : 4;
@@ -268,7 +267,7 @@ constexpr std::uint32_t count_of(Part part, const Counts& counts) {
   return info_of(part).each * counts[info_of(part).count];
 }
 
-// To a power of two.
+// Rounds up to a multiple of `alignment`, a power of two.
 constexpr std::uint32_t aligned(std::uint32_t bytes, std::uint32_t alignment) {
   return (bytes + alignment - 1) & ~(alignment - 1);
 }
@@ -289,8 +288,7 @@ struct Needs {
   bool fit(const BoardMemory& board) const { return total <= board.arena_bytes; }
 };
 
-// Where the writable parts stand, `from` an address on: at the first window of two regions that
-// covers them, the finest one.
+// Places the writable parts behind the image, in the finest window of two regions that covers them.
 inline void place_writable(const BoardMemory& board, std::uint32_t bytes, Needs& needs) {
   const std::uint32_t from = board.arena_begin + needs.open + needs.image;
   for (unsigned bits = regions::kSmallest; bits < regions::kLargest; ++bits) {
@@ -302,7 +300,7 @@ inline void place_writable(const BoardMemory& board, std::uint32_t bytes, Needs&
   }
 }
 
-// Where the region over what is open ends, in the arena.
+// The end in the arena of the region that covers the open parts and the image.
 inline std::uint32_t end_of_cover(const BoardMemory& board, const Needs& needs) {
   const std::uint32_t end = board.arena_begin + needs.open + needs.image;
   const unsigned bits = regions::cover_bits(board.arena_begin, end);
@@ -334,8 +332,8 @@ inline void count_needs(const vm::Image& image, const BoardMemory& board, Needs&
       std::max(needs.writable_begin + needs.writable, end_of_cover(board, needs)) + needs.closed;
 }
 
-// Whether the masks and sets, and the kernel, can hold the program that these were counted of; and
-// whether the board has the memory.
+// Whether the layers' masks and sets and the kernel can hold the program that `needs` was counted
+// from, and whether it fits the board's memory.
 inline vm::Verdict judge(const Needs& needs, const BoardMemory& board) {
   const auto refuse = [](vm::Section section, std::size_t most) {
     return vm::Verdict{vm::Refusal::too_many, section, static_cast<std::uint16_t>(most)};
@@ -356,7 +354,7 @@ inline Needs needs_of(const vm::Image& image, const BoardMemory& board) {
   return needs;
 }
 
-// The same bytes by what takes them, for people.
+// The bytes by what takes them, for reports.
 inline std::array<std::uint32_t, kWhose> shares_of(const Needs& needs) {
   std::array<std::uint32_t, kWhose> shares{};
   const auto share = [&](Whose whose) -> std::uint32_t& {

@@ -1,4 +1,4 @@
-// A panel of WS2812 lights, which are a chain: where in it each light of a picture is. Pure.
+// A panel of WS2812 lights, which are wired as a chain: the place of each light of a picture in it. Pure.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace robosync::policy {
 
-// A picture of 64 lights needs 1.9 ms, and 0.3 of silence before and behind it (boards/common/panel_signal.hpp).
+// A picture of 64 lights takes 1.9 ms, with 0.3 ms of silence before and after it (boards/common/panel_signal.hpp).
 inline constexpr std::uint16_t kPanelGapMs = 4;
 
 inline constexpr unsigned kPictureSide = 5;
@@ -18,11 +18,11 @@ inline constexpr unsigned kMostPanelLights = 64;
 struct Panel {
   std::uint16_t pin = 0;
   std::uint8_t side = kPictureSide;  // lights in a row, and rows
-  bool goes_back = false;            // each second row is wired from right to left
+  bool goes_back = false;            // every second row is wired from right to left
   std::uint32_t color = 0;           // of a lit one, 0xRRGGBB
 
   [[nodiscard]] constexpr unsigned lights() const { return unsigned{side} * side; }
-  // Of light number `light` of a picture (boards::Board::show()), which is in the midst: where it is in the chain.
+  // The place in the chain of light number `light` of a picture (boards::Board::show()), which is centred on the panel.
   [[nodiscard]] constexpr unsigned place_of(unsigned light) const {
     const unsigned margin = (side - kPictureSide) / 2;
     const unsigned row = light / kPictureSide + margin;
@@ -32,7 +32,7 @@ struct Panel {
   }
 };
 
-// Of a verified image.
+// `actuator` is of a verified image.
 constexpr Panel panel_of(const vm::Actuator& actuator) {
   return {.pin = actuator.pin,
           .side = static_cast<std::uint8_t>((actuator.bus & vm::kPanelIsLarge) != 0 ? 8 : 5),

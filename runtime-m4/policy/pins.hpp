@@ -1,4 +1,4 @@
-// What a board lets programs do with its pins, and the check of a program against it: the board makes it at
+// What a board lets programs do with its pins, and the check of a program against that, which the board makes at
 // activation. Pure. Images are verified.
 #pragma once
 
@@ -12,34 +12,34 @@
 
 namespace robosync::policy {
 
-// Pins that may be outputs, and how far a program may go with each; 0 µs is off, and always allowed.
+// Pins that may be outputs, and the limits of each; 0 µs is off, and always allowed.
 struct PinLimit {
   std::uint16_t first, last;        // pins, both included
   std::uint16_t shortest, longest;  // pulse, in microseconds of the 20 ms frame
-  std::uint16_t rise;               // µs that the pulse may change in a millisecond; 0: any
+  std::uint16_t rise;  // µs by which the pulse may change per millisecond; 0: no limit
 };
 
 struct PinRange {
   std::uint16_t first, last;  // both included
 };
 
-// stdlib/boards/NAME.json. A pin that stands in none of `outputs` is no output, and so with inputs. On a board no pin
-// is both: what a pin is it stays, whatever image comes. An analog input may be an output, too: it is one, and low, but for
-// the program that has an analog sensor there (guard/output_guard.hpp).
+// From stdlib/boards/NAME.json. A pin that is not in `outputs` is no output, and likewise for inputs. No pin of a board is both,
+// whatever the image. An analog input may also be an output: then it is an output, and low, unless the running program has an
+// analog sensor there (guard/output_guard.hpp).
 struct BoardPins {
   std::span<const PinLimit> outputs;
   std::span<const PinRange> inputs;
   std::span<const PinRange> analog;
-  // For the enable inputs of chips with outputs of their own, active low: high from the start on, and whenever such outputs are
-  // to be off. They are nothing else.
+  // Pins for the active-low enable inputs of chips with their own outputs. They are high from start-up, and whenever those
+  // outputs must be off. They have no other use.
   std::span<const PinRange> enables;
-  // Outputs that can tell a panel of lights its picture.
+  // Outputs that can send a panel of lights its picture.
   std::span<const PinRange> panels = {};
   std::uint8_t i2c_buses = 0;
-  std::uint8_t serial_lines = 0;  // for players, from vm::kFirstPlayerLine on
+  std::uint8_t serial_lines = 0;  // for players; the first is vm::kFirstPlayerLine
 };
 
-// Null: no output.
+// Null if the pin is no output.
 constexpr const PinLimit* limit_of(const BoardPins& board, std::uint16_t pin) {
   for (const PinLimit& limit : board.outputs)
     if (pin >= limit.first && pin <= limit.last) return &limit;
@@ -60,7 +60,7 @@ constexpr bool is_analog(const BoardPins& board, std::uint16_t pin) {
   return is_in(board.analog, pin);
 }
 
-// A pin that is held to the pulses of servos gives no shorter ones.
+// A pin that is limited to servo pulses cannot make the short trigger pulse.
 constexpr bool can_trigger(std::uint16_t pin, const BoardPins& board) {
   const PinLimit* const limit = limit_of(board, pin);
   return limit != nullptr && limit->shortest == 0;
@@ -97,7 +97,7 @@ constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
   return vm::Refusal::none;
 }
 
-// A pin that is held to the pulses of servos gives no power: it could not be a little, nor all.
+// A pin that is limited to servo pulses cannot drive a power output: it could make neither low power nor full power.
 constexpr bool can_drive(vm::DriverId driver, std::uint16_t pin, const BoardPins& board) {
   const PinLimit* const limit = limit_of(board, pin);
   return limit != nullptr && (limit->shortest == 0 || !vm::gives_power(driver));

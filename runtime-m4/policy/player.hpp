@@ -1,5 +1,5 @@
-// What a sound player is told: the serial commands of a DFPlayer Mini, and of what has its chip (DFRobot DFR0299, "Serial Control
-// Cmd"; Flyron FN-M16P, 3). 9,600 baud, 8 bits, no parity, one stop bit. It is asked for no answer. Pure.
+// The serial commands of a sound player: a DFPlayer Mini, or one with its chip (DFRobot DFR0299, "Serial Control Cmd"; Flyron
+// FN-M16P, 3). 9,600 baud, 8 bits, no parity, one stop bit. The commands request no answer. Pure.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@ namespace robosync::policy {
 using PlayerCommand = std::array<std::byte, 10>;
 inline constexpr std::uint32_t kPlayerBaud = 9'600;
 
-// Who is told something sooner after the last command may miss it.
+// The least time between two commands: a player may miss one that comes sooner.
 inline constexpr std::uint16_t kPlayerGapMs = 50;
 
-// Plays sound number `sound` of its card's folder mp3, 1 to 3000, instead of what it plays; 0: is silent.
+// Plays sound number `sound` (1 to 3000) from the folder mp3 of the player's card, instead of the current one; 0 stops it.
 constexpr PlayerCommand player_command(std::uint16_t sound) {
   constexpr unsigned kPlayFromFolderMp3 = 0x12, kStop = 0x16;
   const unsigned version = 0xFF, length = 6, answer = 0;

@@ -1,4 +1,4 @@
-// What stands on the pin of an actuator when it rests. Pure. Actuators are of verified images.
+// The pulse on the pin of an actuator at rest. Pure. Actuators are of verified images.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace robosync::policy {
 
-inline constexpr std::uint32_t kShortestPulse = 500;  // microseconds; a hobby servo's, at the least
-inline constexpr std::uint32_t kPulseSpan = 2000;     // position, and how much more at the greatest
+inline constexpr std::uint32_t kShortestPulse = 500;  // microseconds, at a servo's least position
+inline constexpr std::uint32_t kPulseSpan = 2000;     // microseconds more at its greatest position
 
-// Where an actuator rests: at 0, or as near to it as its range lets it.
+// Where an actuator rests: at 0, or at the position of its range nearest to 0.
 constexpr vm::Value rest_position(const vm::Actuator& actuator) {
   return std::clamp(vm::Value{0}, actuator.min, actuator.max);
 }
 
-// The pulse of a servo at `position`, which is inside its range, in microseconds.
+// The pulse of a servo at `position`, which is in its range, in microseconds.
 constexpr std::uint32_t pulse_at(const vm::Actuator& servo, vm::Value position) {
   const std::int64_t span = std::int64_t{servo.max} - servo.min;
   const std::int64_t way = std::int64_t{position} - servo.min;
@@ -26,8 +26,8 @@ constexpr std::uint32_t pulse_at(const vm::Actuator& servo, vm::Value position) 
   return kShortestPulse + static_cast<std::uint32_t>(pulse);
 }
 
-// The pulse that puts an actuator on a pin into its safe state, 0 for off. None: the one that is there, with
-// which it stays where it is.
+// The pulse, in microseconds, that puts an actuator on a pin into its safe state; 0 for off. None: keep the
+// current pulse, so that the actuator stays where it is.
 constexpr std::optional<std::uint32_t> safe_pulse(const vm::Actuator& actuator) {
   const vm::PinUse use = vm::pin_use(actuator.driver);
   if (use != vm::PinUse::pulses && use != vm::PinUse::channel) return 0;

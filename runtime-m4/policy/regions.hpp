@@ -1,8 +1,9 @@
-// Which regions of the MPU cover a piece of memory. Pure arithmetic, tested on the host.
+// Which regions of the MPU cover a block of memory. Pure arithmetic, tested on the host.
 //
-// A region is a power of two in size and aligned to it; from 256 bytes on, each of its eighths can
-// be left out. So two neighboring ones of a size, a window, cover any run of eighths that begins
-// in the first: that is how a stack gets its exact borders without being a power of two.
+// A region is a power of two in size and aligned to its size. In a region of 256 bytes or more, each
+// eighth can be disabled. So a window, two neighbouring regions of one size, can cover any run of
+// eighths that begins in the first region. In this way a stack gets exact borders, though its size is
+// no power of two.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ inline constexpr unsigned kEighthBits = 3;
 inline constexpr std::uint32_t kEighths = 1U << kEighthBits;
 inline constexpr std::uint32_t kEnabled = 1;
 
-// What goes into the base register, and into the attribute register but for the access.
+// The values of the base register, and of the attribute register without the access rights.
 struct Region {
   std::uint32_t base = 0;
   std::uint32_t size_and_eighths = 0;  // 0: covers nothing
@@ -27,21 +28,21 @@ constexpr std::uint32_t size_field(unsigned bits) {
   return (bits - 1) << 1 | kEnabled;
 }
 
-// One region of 2^bits bytes, of which it covers the eighths in `mask`.
+// A region of 2^bits bytes that covers the eighths in `mask`.
 constexpr Region region(std::uint32_t base, unsigned bits, std::uint32_t mask) {
   mask &= 0xFF;
   if (mask == 0) return {base, 0};
   return {base, size_field(bits) | (~mask & 0xFF) << 8};
 }
 
-// Whether a window of two regions of 2^bits bytes covers exactly that.
+// Whether a window of two regions of 2^bits bytes can cover exactly these bytes.
 constexpr bool fits_window(std::uint32_t begin, std::uint32_t bytes, unsigned bits) {
   const std::uint32_t within_eighth = (1U << bits) / kEighths - 1;
   const std::uint32_t within_region = (1U << bits) - 1;
   return ((begin | bytes) & within_eighth) == 0 && (begin & within_region) + bytes <= 2U << bits;
 }
 
-// It, when it fits.
+// That window. fits_window() must be true.
 constexpr Window window(std::uint32_t begin, std::uint32_t bytes, unsigned bits) {
   const std::uint32_t size = 1U << bits;
   const std::uint32_t base = begin & ~(size - 1);
@@ -50,18 +51,18 @@ constexpr Window window(std::uint32_t begin, std::uint32_t bytes, unsigned bits)
   return {region(base, bits, mask), region(base + size, bits, mask >> kEighths)};
 }
 
-inline constexpr unsigned kSmallest = 8;  // 256 bytes, which is the smallest with eighths
+inline constexpr unsigned kSmallest = 8;  // 256 bytes, the smallest region with eighths
 inline constexpr unsigned kLargest = 31;
 
-// The finest window that covers exactly that; one that covers nothing when there is none.
+// The finest window that covers exactly these bytes; if there is none, a window that covers nothing.
 constexpr Window finest_window(std::uint32_t begin, std::uint32_t bytes) {
   for (unsigned bits = kSmallest; bits < kLargest; ++bits)
     if (fits_window(begin, bytes, bits)) return window(begin, bytes, bits);
   return {};
 }
 
-// How large a window for so many bytes must be, and how aligned, so that there is one wherever it begins: nine eighths
-// of a region are always in two.
+// The size and alignment that memory for `bytes` bytes must have so that a window covers it wherever it begins: nine
+// eighths of a region always fit two regions.
 struct Fit {
   std::uint32_t bytes;
   std::uint32_t alignment;
@@ -74,7 +75,7 @@ constexpr Fit fit_anywhere(std::uint32_t bytes) {
   return {(bytes + unit - 1) & ~(unit - 1), unit};
 }
 
-// The smallest power of two that one region over begin … end - 1 can have.
+// The size of the smallest region over begin … end - 1, as a power of two.
 constexpr unsigned cover_bits(std::uint32_t begin, std::uint32_t end) {
   unsigned bits = kSmallest;
   while (bits < kLargest && begin >> bits != (end - 1) >> bits)
@@ -82,8 +83,8 @@ constexpr unsigned cover_bits(std::uint32_t begin, std::uint32_t end) {
   return bits;
 }
 
-// The one region that covers begin … end - 1 with the least around it. It may need more than there
-// is at both sides: up to an eighth.
+// The smallest single region that covers begin … end - 1. At both ends it may cover more than that, up
+// to an eighth of its size.
 constexpr Region cover(std::uint32_t begin, std::uint32_t end) {
   const unsigned bits = cover_bits(begin, end);
   if (bits == kLargest) return {};

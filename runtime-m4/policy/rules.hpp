@@ -1,5 +1,5 @@
-// What a rule may do when, as its modifiers and the time words say it, and who gives way to whom.
-// Pure; layers/ act by it, analysis/ counts by it. Images are verified.
+// What a rule may do at which times, by its modifiers and time words, and which claim takes an
+// actuator from which. Pure; used by layers/ and analysis/. Images are verified.
 #pragma once
 
 #include <algorithm>
@@ -9,38 +9,38 @@
 
 namespace robosync::policy {
 
-// Of a duration in thousandths of a second; none is negative.
+// Converts a duration in thousandths of a second; negative ones give 0.
 constexpr std::uint32_t milliseconds_of(vm::Value thousandths) {
   return static_cast<std::uint32_t>(std::max<vm::Value>(thousandths, 0));
 }
 
-// Between two turns of an EVERY.
+// The time between two runs of an EVERY.
 constexpr std::uint32_t period_ms(vm::Value thousandths) {
   return std::max<std::uint32_t>(milliseconds_of(thousandths), 1);
 }
 
-// Between two samples of a CHECK that smooths.
+// The time between two samples of a CHECK with SMOOTH.
 constexpr std::uint32_t sample_period_ms(const vm::Check& check) {
   return std::max<std::uint32_t>(check.sample_ms, 1);
 }
 
-// How often the safety thread looks when nothing calls it: at the rules, and at the program's life.
+// How often the safety thread checks its rules and the program's liveness when nothing wakes it earlier.
 inline constexpr std::uint32_t kSafetyPeriodMs = 10;
 
-// What a moving actuator gets its next setpoint in: the frame of servos and PWM.
+// A moving actuator gets a setpoint in each such period: the frame of servos and PWM.
 inline constexpr std::uint32_t kSetpointPeriodMs = 20;
 
-// How long who has asked a bus waits at most, once the answer is due, in ticks of a millisecond.
+// Ticks (of 1 ms) that a sensor waits at most for a bus transfer after its sample is due.
 inline constexpr std::uint32_t kBusTicks = 2;
 
-// In what all that is asked of a bus at once must be over, in microseconds: it is asked a tick ahead. The rest is for what the
-// processor does first.
+// All transfers that are requested from a bus at the same time must end within this time, in microseconds. They are requested a
+// tick ahead. 100 µs are left for work that the processor does first.
 inline constexpr std::uint32_t kBusWindowUs = (1 + kBusTicks) * 1000 - 100;
 
-// From the pulse that asks for an echo to the sample: who has heard nothing after 38 ms hears nothing.
+// From the trigger pulse of an echo sensor to its sample. If there is no echo within 38 ms, none comes.
 inline constexpr std::uint32_t kEchoMs = 40;
 
-// How long a row of a board's lights is on, until the next one is.
+// How long each row of a board's lights is on.
 inline constexpr std::uint32_t kRowMs = 2;
 
 inline constexpr vm::Modifiers kPlain{};
@@ -49,20 +49,20 @@ inline const vm::Modifiers& modifiers_of(const vm::Image& image, const vm::Rule&
   return rule.modifiers == vm::kNoModifiers ? kPlain : image.modifiers[rule.modifiers];
 }
 
-// May it cool down or wait? Few do, so that times of these are kept for those alone.
+// May the rule cool down or wait? Few rules do, so the times are kept for these only.
 constexpr bool has_delays(const vm::Rule& rule) {
   return rule.modifiers != vm::kNoModifiers;
 }
 
-// Does it claim its actuators again after it has lost them, without a new trigger?
+// Does the rule claim its actuators again after it has lost them, without a new trigger?
 inline bool claims_again(const vm::Image& image, const vm::Rule& rule) {
   return rule.kind == vm::RuleKind::while_ || rule.kind == vm::RuleKind::when_else ||
          milliseconds_of(modifiers_of(image, rule).waiting) > 0;
 }
 
-// May a claim take an actuator from a response of behaviour `owner`? A trigger takes from its own
-// behaviour and from lower ones; a claim that is tried again, from lower ones only. Behaviours are
-// numbered from the highest priority down.
+// May a claim take an actuator from a response of behaviour `owner`? A trigger may take it from its
+// own behaviour and from lower ones; a retried claim, from lower ones only. Behaviours are numbered
+// from the highest priority down.
 constexpr bool may_take(unsigned claimant, unsigned owner, bool retries) {
   return retries ? owner > claimant : owner >= claimant;
 }

@@ -1,5 +1,5 @@
-// Who outranks whom: a thread's standing, worked out from its category and its priority. Pure; the
-// kernel ranks threads by it, and analysis/ asks it which of them may interrupt which.
+// Which thread outranks which: a thread's standing, computed from its category and its priority.
+// Pure. The kernel ranks threads by it, and analysis/ derives from it which thread may preempt which.
 #pragma once
 
 #include <compare>
@@ -7,13 +7,13 @@
 
 namespace robosync::policy {
 
-// Threads that the kernel ranks at most: one bit each in its ready set.
+// The maximum number of threads: one bit each in the kernel's ready set.
 inline constexpr unsigned kMaxThreads = 96;
 
-// The paper's four categories with that of algorithms, and the two kinds of threads around them. Inside one behaviour's
-// priority, a later category ranks higher. `safety` ranks above everything, `system` (the link) below everything, and
-// `control` above the rest of a program, whatever its behaviour's priority: what an actuator has done at a time is known to
-// the step of that time, or what the robot does would depend on which other behaviours there are.
+// The paper's four categories, that of algorithms, and two around them. Within one behaviour's priority, a later category
+// ranks higher. `safety` ranks above everything, `system` (the link) below everything, and `control` above the rest of a
+// program, whatever its behaviour's priority. So the step of a given time knows what each actuator has done by that time;
+// otherwise unrelated behaviours would change what the robot does.
 enum class Category : std::uint8_t {
   system,
   sensor,
@@ -25,9 +25,9 @@ enum class Category : std::uint8_t {
 };
 inline constexpr unsigned kCategories = 7;
 
-// What a thread's behaviour is worth: `now` decides, and between equals `base`, the priority as it
-// was written (adaptation.hpp says how the two come to differ). Behaviours have distinct bases, so
-// two behaviours are never equal.
+// The priority of a thread's behaviour. `now` decides; between equals, `base` does, the priority as
+// written (adaptation.hpp explains how the two come to differ). Behaviours have distinct bases, so two
+// behaviours are never equal.
 struct Priority {
   std::int8_t now = 0;
   std::int8_t base = 0;
@@ -36,8 +36,8 @@ struct Priority {
   friend constexpr auto operator<=>(const Priority&, const Priority&) = default;
 };
 
-// A thread's place in the order as one number, below 2^kStandingBits: the higher outranks. Equals
-// rank by age. What it was made of can be had of it again.
+// A thread's place in the order as one number, below 2^kStandingBits: the higher number outranks.
+// Equals rank by age. category_of() and priority_of() recover its parts.
 //
 //   bits 22–21: 3 safety, 2 control, 0 system, else 1 | 18–11: now + 128 | 10–3: base + 128 | 2–0: category
 using Standing = std::uint32_t;

@@ -1,7 +1,7 @@
-// Which threads a program has, and which behaviours need each: what a thread is worth is the most
-// that a behaviour that needs it is worth. Pure; the runtime starts and ranks threads by it,
-// analysis/ works out who outranks whom. Images are verified: behaviours stand from the highest
-// priority down, the SAFETY rules first.
+// Which threads a program has, and which behaviours need each: a thread has the highest priority of
+// the behaviours that need it. Pure. The runtime starts and ranks threads by it, and analysis/ derives
+// which thread outranks which. Images are verified: behaviours are in order of falling priority, with
+// the SAFETY rules first.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace robosync::policy {
 
 inline constexpr vm::DriverId kFedDriver = vm::DriverId::virtual_sensor;
 
-// Its readings are made of another sensor's: it is neither sampled nor fed.
+// Its readings are computed from those of another sensor: it is neither sampled nor fed.
 constexpr bool is_algorithm(const vm::Sensor& sensor) {
   return sensor.driver == vm::DriverId::algorithm;
 }
@@ -39,21 +39,21 @@ inline unsigned input_of(const vm::Image& image, const vm::Sensor& algorithm) {
   return image.channels[algorithm.first_input].sensor;
 }
 
-// In the place of a sensor: all that are fed, which one thread serves. It is started after those of
-// the sensors that are sampled, which have one each, in the order of the image.
+// Used as a sensor number, means all fed sensors, which share one thread. It is started after the
+// threads of the sampled sensors, which have one each, in the order of the image.
 inline constexpr unsigned kFedSensors = 0xFE;
-// In the place of a sensor: all algorithms. One thread, started behind all of the sensors, brings the readings to
-// the modules' threads and back; these have the same priority, and by their category outrank it.
+// Used as a sensor number, means all algorithms. One thread, started after those of the sensors, passes readings to
+// the modules' threads and results back. The modules' threads have the same priority, and outrank it by category.
 inline constexpr unsigned kAlgorithms = 0xFF;
 
-// The thread that serves a sensor: named after the sensor, or kFedSensors, or kAlgorithms.
+// The thread that serves a sensor: the sensor's number, or kFedSensors, or kAlgorithms.
 inline unsigned thread_of(const vm::Image& image, unsigned sensor) {
   if (is_algorithm(image.sensors[sensor])) return kAlgorithms;
   return is_fed(image.sensors[sensor]) ? kFedSensors : sensor;
 }
 
-// Does what a thread measures go into an algorithm? Then who reads an algorithm needs that thread, too: so it
-// never ranks below what waits for its readings.
+// Does an algorithm use what this thread measures? Then the behaviours that read an algorithm need the thread too,
+// so it never ranks below the threads that wait for its readings.
 inline bool feeds_algorithm(const vm::Image& image, unsigned sensor_thread) {
   return std::ranges::any_of(image.sensors, [&](const vm::Sensor& algorithm) {
     return is_algorithm(algorithm) && thread_of(image, input_of(image, algorithm)) == sensor_thread;
@@ -74,19 +74,19 @@ void each_channel_of_thread(const vm::Image& image, unsigned sensor_thread, Take
 
 // --- behaviours ---
 
-// The first that is not the SAFETY rules.
+// The first behaviour after the SAFETY rules.
 inline unsigned first_behavior(const vm::Image& image) {
   return image.has_safety() ? vm::kSafetyBehavior + 1U : 0;
 }
 
-// Of threads that no behaviour needs: below all that one does.
+// The priority of threads that no behaviour needs: below that of all others.
 inline std::int8_t idle_priority(const vm::Image& image) {
   if (image.behaviors.empty()) return 0;
   return static_cast<std::int8_t>(image.behaviors.back().priority - 1);
 }
 
-// Does `behavior` need a thread of this category? `index` is that of its behaviour or actuator;
-// `reads`: of a sensor's or an algorithm's thread, that the behaviour reads one of its channels.
+// Does `behavior` need a thread of this category? `index`: the thread's behaviour or actuator.
+// `reads`: for a sensor's or an algorithm's thread, whether the behaviour reads one of its channels.
 inline bool needs(const vm::Image& image, unsigned behavior, Category category, unsigned index,
                   bool reads) {
   switch (category) {

@@ -24,7 +24,7 @@ void Monitor::run() {
     if ((why & (kPerson | kProgram)) != 0) [[unlikely]] {
       if ((why & kPerson) != 0) supervised_.obey();
       if ((why & kProgram) != 0) {
-        due = std::min(due, supervised_.began());  // the watchdog waits for nobody's program
+        due = std::min(due, supervised_.began());  // the watchdog does not wait for a program
         rules_due = kernel::kForever;
         without_progress_ = 0;
       }
@@ -38,7 +38,7 @@ void Monitor::run() {
   }
 }
 
-// Periods are the program's, from its begin on. Those that are over already are skipped, never made up for.
+// Periods are in program time, from the program's beginning on. Missed periods are skipped, never made up for.
 kernel::Time Monitor::next_after(kernel::Time due, kernel::Time now) const {
   if (!supervised_.running()) return now + idle_us_;
   if (now < supervised_.began()) return std::min(supervised_.began(), now + idle_us_);

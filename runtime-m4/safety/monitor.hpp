@@ -1,15 +1,15 @@
-// Safety monitor: a thread above all others that looks after the safety rules, checks every 10 ms
-// that the program is alive, and keeps the watchdog from resetting the board as long as it is.
+// Safety monitor: the thread of the highest rank. It evaluates the safety rules, checks every 10 ms
+// that the program is alive, and kicks the watchdog as long as it is.
 //
-// Before program time begins it looks at the rules when one of their inputs has changed, and when the time
-// for that is over. Its periods are those of program time, beginning with 0: at each it looks at the rules and at the
-// program's life, once. In between it looks at the rules when one of their inputs has changed or one
-// of their time words is due. So when a rule trips depends on the program and its readings alone, not on
+// Before program time begins, it evaluates the rules when one of their inputs has changed, and when the wait for the
+// sensors is over. Its periods are in program time, beginning at 0: at each it evaluates the rules and checks the
+// program's liveness, once. In between it evaluates the rules when one of their inputs has changed or one
+// of their time words is due. So the time at which a rule trips depends on the program and its readings only, not on
 // when the board was switched on.
 //
-// A program is hung when its step thread has work and has not finished a pass for kChecksUntilHung checks
-// in a row. Then the actuators are halted, again at every check, and the watchdog is left alone: it
-// resets the board. The monitor goes on through uploads and activations.
+// A program hangs when its step thread has work and has not finished a pass for kChecksUntilHung checks
+// in a row. Then the monitor halts the actuators, again at every check, and stops kicking the watchdog, which
+// resets the board. The monitor keeps running during uploads and activations.
 #pragma once
 
 #include <array>
@@ -23,25 +23,25 @@
 
 namespace robosync::safety {
 
-// What the monitor watches over. Called from the safety thread.
+// What the monitor supervises. Called from the safety thread.
 class Supervised {
 public:
-  virtual bool resting() const = 0;            // it has nothing to do
+  virtual bool resting() const = 0;            // true if it has nothing to do
   virtual std::uint32_t progress() const = 0;  // changes with every piece of work it finishes
-  // Called at each check: did it finish any, or had nothing to do, since the last one? If it did
-  // not, who holds it up may be stopped.
+  // Called at each check. `alive`: since the last check it has finished work, or had none. If not, a
+  // thread that delays it may be stopped.
   virtual void hold_to_budgets(bool alive) = 0;
-  // Puts all actuators into their safe state, and lets no command through from then on. May be
-  // called again.
+  // Puts all actuators into their safe state, and blocks all commands from then on. May be called
+  // again.
   virtual void halt(kernel::Duration stuck_for) = 0;
-  // Called at each check: outputs that may not change at once go on.
+  // Called at each check: moves outputs on that may only change gradually.
   virtual void tend_outputs() = 0;
-  // A person has said stop, or resume.
+  // A person has ordered a stop or a resume.
   virtual void obey() = 0;
-  // Evaluates the safety rules. Returns when a time word of theirs is due.
+  // Evaluates the safety rules. Returns the time at which a time word of theirs is due.
   virtual kernel::Time look_at_rules() = 0;
   virtual bool running() const = 0;        // is there a program?
-  virtual kernel::Time began() const = 0;  // its time 0, or when that will be there at the latest
+  virtual kernel::Time began() const = 0;  // its time 0, or the latest time at which that will be
 
 protected:
   ~Supervised() = default;
@@ -54,11 +54,11 @@ public:
   Monitor(kernel::Kernel& kernel, boards::Board& board, Supervised& supervised)
       : kernel_(kernel), board_(board), supervised_(supervised) {}
 
-  // Creates the thread. False when the kernel has no place for it.
+  // Creates the thread. False if the kernel has no room for it.
   [[nodiscard]] bool start();
 
-  // Signalled (kNews) when an input has changed that a safety rule reads, and
-  // (kProgram) when there is another program, and (kPerson) when a person has said stop or resume.
+  // Events of the thread. kNews: an input that a safety rule reads has changed. kProgram: there is
+  // another program. kPerson: a person has ordered a stop or a resume.
   static constexpr kernel::Events kNews = 1;
   static constexpr kernel::Events kProgram = 2;
   static constexpr kernel::Events kPerson = 4;

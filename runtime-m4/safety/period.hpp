@@ -1,5 +1,5 @@
-// How often the safety thread looks when nothing calls it: at the rules, and at the program's life.
-// The periods are those of program time.
+// How often the safety thread evaluates the rules and checks the program's liveness when nothing wakes
+// it earlier. Periods are in program time.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace robosync::safety {
 
 inline constexpr kernel::Duration kPeriod = kernel::milliseconds(policy::kSafetyPeriodMs);
 
-// … and when no program runs: then there is nothing but the watchdog to look after. Its oscillator may be a tenth too fast.
+// The period when no program runs: then the thread only kicks the watchdog, whose oscillator may be a tenth too fast.
 constexpr kernel::Duration idle_period(std::uint32_t watchdog_ms) {
   return kernel::milliseconds(watchdog_ms * 3 / 5);
 }

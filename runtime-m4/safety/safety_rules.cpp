@@ -1,4 +1,4 @@
-// See safety_rules.hpp. May rely on the verifier: SAFETY holds safety rules, each with a resume rule behind it or none, and
+// See safety_rules.hpp. Relies on the verifier: SAFETY contains safety rules, each followed by a resume rule or none, and
 // bodies are straight-line code.
 #include "runtime-m4/safety/safety_rules.hpp"
 
@@ -83,8 +83,8 @@ void SafetyRules::latch_fresh() {
   });
 }
 
-// Where it trips, the pins come first and all else behind them. The resume condition is evaluated in any case: it may
-// have to remember something. Returns the next rule, behind that condition.
+// If the rule trips, the pins come first, then everything else. The resume condition is always evaluated, because its time
+// words may keep state. Returns the rule after that condition.
 [[gnu::always_inline]] inline const vm::Rule* SafetyRules::evaluate(const vm::Rule& rule) {
   const vm::Value danger = truth_of(rule);
   const bool was_tripped = !tripped_.empty() && tripped_.has(number_of(rule));
@@ -134,7 +134,7 @@ void SafetyRules::trip(const vm::Rule& rule) {
   kernel_.signal(step_thread_, acted_);
 }
 
-// What it has put out.
+// Returns the body's output.
 std::span<const vm::Word> SafetyRules::run_body(const vm::Rule& rule) {
   vm::Machine& machine = work_->machine;
   machine.output = output_.data();
@@ -162,17 +162,17 @@ void SafetyRules::resume(const vm::Rule& rule) {
   layers_.control.let_go(halted_by(rule) & ~still);
 }
 
-// What its body halts: it has no other use for actuators, and the verifier has counted them.
+// The actuators that its body halts: it uses actuators for nothing else, and the verifier has checked their mask.
 inline ActuatorMask SafetyRules::halted_by(const vm::Rule& rule) const {
   return responses_[rule.then_response].actuators;
 }
 
-// As the image counts them.
+// The rule's number in the image.
 inline unsigned SafetyRules::number_of(const vm::Rule& rule) const {
   return static_cast<unsigned>(&rule - program_->image.rules.data());
 }
 
-// … and none is due any more, until one says so again.
+// Resets the machine's wake time: no time word is due until one sets it again.
 kernel::Time SafetyRules::next_look() {
   vm::Machine& machine = work_->machine;
   const std::uint32_t wake = std::exchange(machine.wake, vm::Machine::kNever);

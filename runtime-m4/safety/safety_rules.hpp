@@ -1,15 +1,15 @@
-// Evaluates the SAFETY rules of the running program and does what they say at once, in the safety
+// Evaluates the SAFETY rules of the running program and acts on them immediately, in the safety
 // thread: it does not wait for a step.
 //
-// It reads what the sensors measured last and what the last step knew of the variables: when one of
-// those changes, at each period of program time, and when a time word is due (monitor.hpp). A
-// rule trips when its condition is true or unknown, from the beginning of program time on: the runtime
-// lets that begin when the sensors had their time to measure. It stays tripped until its resume condition is true while its
+// It reads the latest readings of the sensors, and the variables as of the last step: when one of
+// these changes, at each period of program time, and when a time word is due (monitor.hpp). A
+// rule trips when its condition is true or unknown, from the beginning of program time on; the runtime begins that
+// when the sensors have had time to measure. It stays tripped until its resume condition is true while its
 // condition is false; without a resume condition, until the next program. Actuators that it has
 // halted take no command meanwhile, nor while another tripped rule halts them.
 //
-// Its bytecode runs in a sandbox: without privileges, and with one region that it may write. If it touched anything
-// else, that would be a fault of the safety thread: outputs off, reset.
+// Its bytecode runs in a sandbox: unprivileged, with one memory region that it may write. An access to anything else
+// is a fault of the safety thread: outputs off, reset.
 #pragma once
 
 #include <atomic>
@@ -47,14 +47,14 @@ public:
               kernel::Events acted)
       : kernel_(kernel), layers_(neighbours), step_thread_(step_thread), acted_(acted) {}
 
-  // Nothing is tripped. `program` must stay until the next start().
+  // Starts with no rule tripped. `program` must stay valid until the next start().
   [[gnu::cold]] void start(const layers::LoadedProgram& program, const layers::SafetyRegion& region,
                            layers::Memory& memory);
 
-  // Evaluates all rules. Returns when a time word of theirs is due.  [safety thread]
+  // Evaluates all rules. Returns the time at which a time word of theirs is due.  [safety thread]
   kernel::Time look();
 
-  bool have_tripped() const { return have_tripped_; }  // one of them, since start()  [any]
+  bool have_tripped() const { return have_tripped_; }  // has any rule, since start()?  [any]
 
 private:
   void latch(std::uint32_t tick);
@@ -63,7 +63,7 @@ private:
   const vm::Rule* evaluate(const vm::Rule& rule);
   vm::Value truth_of(const vm::Rule& rule);
   void tell_zero_divide(const vm::Rule& rule);
-  // What is not in a hurry takes no registers from what is.
+  // Rare paths are out of line, so that they take no registers from the frequent one.
   [[gnu::cold, gnu::noinline]] void note_zero_divide(const vm::Rule& rule);
   [[gnu::cold, gnu::noinline]] void trip(const vm::Rule& rule);
   [[gnu::cold, gnu::noinline]] void resume(const vm::Rule& rule);
@@ -77,19 +77,18 @@ private:
   kernel::Kernel& kernel_;
   Neighbours layers_;
   kernel::Thread& step_thread_;
-  kernel::Events acted_;  // signalled when something was set
+  kernel::Events acted_;  // signalled when a rule has set a variable
   const layers::LoadedProgram* program_ = nullptr;
-  std::span<const std::uint8_t> inputs_;  // that they read
-  const vm::Rule* first_rule_ = nullptr;  // with those that let them go
+  std::span<const std::uint8_t> inputs_;  // of the rules
+  const vm::Rule* first_rule_ = nullptr;  // includes the resume rules
   const vm::Rule* end_rule_ = nullptr;
-  std::size_t channels_ = 0;        // of the image: inputs below are theirs
-  const vm::Word* code_ = nullptr;  // of the image, as …
+  std::size_t channels_ = 0;        // of the image: inputs with lower numbers are channels
+  const vm::Word* code_ = nullptr;  // of the image, like responses_
   const vm::Response* responses_ = nullptr;
   std::atomic<bool> have_tripped_ = false;
   layers::RuleSet tripped_;
   port::Sandbox sandbox_;
-  layers::SafetyRegion::Work* work_ =
-      nullptr;  // what the bytecode may write, as output_ and frame_
+  layers::SafetyRegion::Work* work_ = nullptr;  // the bytecode may write it, output_ and frame_
   std::span<vm::Word> output_;
   vm::Value* frame_ = nullptr;
 };
