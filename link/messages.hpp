@@ -199,8 +199,8 @@ struct Kept {
   ProgramHash kept_hash;
   std::uint32_t previous_bytes;  // of the program that was kept before it
   ProgramHash previous_hash;
-  std::uint32_t most_bytes;  // of an image that can be kept
-  std::uint32_t trial_ms;    // on_trial: time left; then it is kept as soon as it is written
+  std::uint32_t most_bytes;   // of an image that can be kept
+  std::uint32_t trial_ms;     // on_trial: time left; then it is kept as soon as it is written
   ProgramHash given_up_hash;  // the latest program since start-up to fail its trial; zeros: none
   Keeping state;
   std::uint8_t
