@@ -53,8 +53,8 @@ public:
 
   // Verifies `image` and, if it may run and fits, replaces the running program with a copy of it;
   // otherwise the running program continues. `named`: the image's name is the one computed from its
-  // bytes; if not, the image is refused. Call it before Kernel::run(), or from a thread of category
-  // `system`: that has the lowest rank, so no step is in progress when it runs.
+  // bytes; if not, the image is refused, after all other checks. Call it before Kernel::run(), or from
+  // a thread of category `system`: that has the lowest rank, so no step is in progress when it runs.
   vm::Verdict activate(std::span<const std::byte> image, bool named = true);
   // Ends the running program and releases its actuators.  [as activate()]
   void clear();

@@ -105,7 +105,7 @@ Digest Identity::finish(std::span<const std::byte> image) {
   std::uint32_t end = static_cast<std::uint32_t>(image.size());
   if (image.size() >= sizeof(ImageHeader)) end = std::min(end, end_of(image));
   end &= ~(kWordBytes - 1);
-  constexpr std::uint32_t kMark = kWordBytes, kLength = 2 * kWordBytes;  // behind the end
+  constexpr std::uint32_t kMark = kWordBytes, kLength = 2 * kWordBytes;  // after the end
   const std::uint32_t blocks = (end + kMark + kLength + kBlock - 1) / kBlock;
   const std::uint32_t bits_at = blocks * kBlock - kWordBytes;
   while (taken_ < bits_at)

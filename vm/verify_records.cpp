@@ -247,8 +247,8 @@ Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t ind
   return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 
-// A channel of a chip has one owner. In a halt the chip's only enable pin turns all its pulses off. So all servos of a chip go limp
-// together, or all hold, and none can be brought to rest.
+// A channel of a chip has one owner. In a halt, the chip's single enable pin turns all its pulses off. So the servos of a chip go
+// limp together, or all hold, and none can be brought to rest.
 Refusal check_channel_of_chip(const Walk& walk, const Actuator& servo, std::size_t index) {
   const Image& image = walk.image;
   if (servo.bus >= image.sensors.size() || !is_servo_chip(image.sensors[servo.bus].driver) ||

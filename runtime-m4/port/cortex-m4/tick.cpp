@@ -4,8 +4,8 @@
 // While all threads are blocked there are no ticks: the idle thread (switch.S) stops SysTick, sets an
 // alarm for the tick at which the timers have work, and sleeps. Whatever wakes it, the ticks that have
 // passed are counted before any interrupt is taken, so no handler and no thread ever reads an old
-// time. Then, before any thread can run, the idle thread restarts SysTick in phase with the ticks, and
-// pends its handler, which wakes the threads that are due.
+// time. Then, before any thread can run, the idle thread restarts SysTick in phase with the ticks. Its
+// handler is pending, and wakes the threads that are due.
 //
 // SysTick never fires before the clock says that the tick is over: it is set kLate counts late.
 #include "runtime-m4/port/cortex-m4/tick.hpp"
