@@ -1,4 +1,4 @@
-// Trace events (events.def): what the runtime did, when and why. Same on the host and on the board.
+// Trace events (events.def): what the runtime did, when and why. The same on the host and on the board.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ enum class EventKind : std::uint8_t {
 
 inline constexpr std::size_t kMaxEventValues = 10;
 
-// The object of lose and interrupt in the place of a behaviour: a person has stopped the robot.
+// The object of lose and interrupt, instead of a behaviour, when a person has stopped the robot.
 inline constexpr std::uint16_t kStop = 0xFFFF;
 
-// Of `values` the first value_count are there; the others are undefined, since the board makes
-// events in a hurry. For `command`: [0] the word or -1, [1] the mask of given parameters, then their
-// values in order.
+// The first value_count of `values` are valid; the others are undefined, because creating events on
+// the board is time-critical. For `command`: [0] the word or -1, [1] the mask of given parameters,
+// then their values in order.
 struct Event {
   std::uint64_t time_us = 0;  // program time of the step
   std::uint32_t step = 0;
@@ -38,11 +38,11 @@ struct Event {
 inline constexpr std::size_t kMaxEncodedEvent = 8 + 4 + 1 + 1 + 2 + 2 + 4 * kMaxEventValues;
 static_assert(kMaxEncodedEvent <= kMaxPayload);
 
-[[nodiscard]] bool known(EventKind kind);  // it stands in events.def
+[[nodiscard]] bool known(EventKind kind);  // is it in events.def?
 
-// Returns the length of the wire form. At most kMaxEventValues are sent.
+// Returns the length of the wire form. Sends at most kMaxEventValues values.
 std::size_t encode_event(const Event& event, std::span<std::byte, kMaxEncodedEvent> out);
-// False when the payload is not a whole event of a known kind.
+// False if the payload is not a complete event of a known kind.
 [[nodiscard]] bool decode_event(std::span<const std::byte> payload, Event& event);
 
 }  // namespace robosync::link

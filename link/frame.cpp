@@ -1,6 +1,6 @@
-// COBS framing with a CRC-16. May assume nothing of what comes in; promises that whatever the
-// decoder accepts was sent as one frame (but for one damaged frame in 65,536), and that it is in
-// step again after the next delimiter.
+// COBS framing with a CRC-16. Assumes nothing about its input. Guarantees that a frame which the
+// decoder accepts was sent as one frame (except for one damaged frame in 65,536), and that the decoder
+// is synchronised again after the next delimiter.
 #include "link/frame.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::byte kDelimiter{0};
 
-// CRC of each value of half a byte: 32 bytes of table instead of 512, twice the steps.
+// The CRC of each half-byte value: a table of 32 bytes instead of 512, for twice the steps.
 constexpr std::array<std::uint16_t, 16> kCrcTable = [] {
   std::array<std::uint16_t, 16> table{};
   for (unsigned nibble = 0; nibble < table.size(); ++nibble) {
@@ -23,7 +23,7 @@ constexpr std::array<std::uint16_t, 16> kCrcTable = [] {
   return table;
 }();
 
-// Replaces each zero of block[1…] by the distance to the next one; block[0] takes the first.
+// Replaces each zero of block[1…] with the distance to the next one; block[0] gets the first distance.
 void cobs_encode(std::span<std::byte> block) {
   std::size_t last_zero = 0;
   for (std::size_t i = 1; i < block.size(); ++i) {
@@ -34,7 +34,7 @@ void cobs_encode(std::span<std::byte> block) {
   block[last_zero] = static_cast<std::byte>(block.size() - last_zero);
 }
 
-// The reverse, in place. False when the distances do not end at the block's end.
+// The reverse, in place. False if the distances do not end at the block's end.
 bool cobs_decode(std::span<std::byte> block) {
   std::size_t i = 0;
   while (i < block.size()) {
@@ -85,7 +85,7 @@ bool FrameDecoder::push(std::byte byte) {
 }
 
 bool FrameDecoder::finish() {
-  const bool empty = length_ == 0;  // two delimiters in a row: a host that clears the line
+  const bool empty = length_ == 0;  // two delimiters in a row: a host clears the line
   const bool good = !empty && !overflow_ && decode();
   if (!empty && !good) ++bad_frames_;
   length_ = 0;

@@ -1,8 +1,8 @@
-// Orders, and what their signature covers: the one place that both ends read.
+// Orders, and what their signature covers. Both ends use this file.
 //
-// A signature says: this order, with this payload, to the board that gave this boot id, as its order number so and so. So one
-// that was seen on the line is worth nothing for another order, another board, after a reset, or a second time. The text
-// begins with words of its own, so that no signature made for something else fits.
+// A signature covers the order, its payload, the board's boot id, and the order's number. So a signature that was recorded from
+// the line is not valid for another order, for another board, after a reset, or a second time. The text begins with fixed words,
+// so that no signature made for another purpose fits.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ constexpr Direction direction_of(MessageType type) {
 #include "link/messages.def"
 #undef MESSAGE
   }
-  return Direction::to_host;  // no message: boards ignore those, too
+  return Direction::to_host;  // an unknown message: boards ignore it, like those to the host
 }
 
 constexpr bool is_order(MessageType type) {
@@ -42,7 +42,7 @@ struct OrderText {  // followed by the payload of the order
 };
 inline constexpr std::size_t kMaxOrderText = sizeof(OrderText) + kMaxOrder;
 
-// Writes the text that the signature of `order` with `payload` (at most kMaxOrder bytes) is of. Returns its bytes.
+// Writes the text that is signed for `order` with `payload` (at most kMaxOrder bytes). Returns its bytes.
 std::span<const std::byte> order_text(const SignedOrder& order, std::span<const std::byte> payload,
                                       std::span<std::byte, kMaxOrderText> out);
 

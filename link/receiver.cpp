@@ -1,6 +1,6 @@
-// Receiving end of a transfer. May assume nothing of sizes and offsets: they come from the line.
-// Promises that it writes inside the buffer only, and that when it is complete every byte of the
-// announced size was written once, in order.
+// Receiving end of a transfer. Sizes and offsets are not trusted: they come from the line. Guarantees
+// that it writes inside the buffer only, and that in a complete transfer every byte of the announced
+// size was written once, in order.
 #include "link/receiver.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ TransferStatus Receiver::data(std::uint32_t offset, std::span<const std::byte> b
   return status();
 }
 
-// All of them or none: `next_` moves at the end only.
+// Accepts all pieces or none: `next_` moves at the end only.
 TransferStatus Receiver::pieces(std::uint32_t offset, std::span<const std::byte> pieces) {
   if (!active_) return {0, TransferState::no_transfer};
   if (offset != next_) return status();
@@ -53,7 +53,7 @@ bool Receiver::put(std::uint32_t at, std::span<const std::byte> bytes) {
   return true;
 }
 
-// Byte by byte, for what is copied may be what has just been.
+// Copies byte by byte, because the source may include bytes that were just copied.
 bool Receiver::copy(const Piece& piece) {
   for (std::size_t from = piece.from; from < piece.from + std::size_t{piece.copied}; ++from) {
     const bool old = from < base_.size();

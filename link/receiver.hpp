@@ -1,8 +1,8 @@
-// Receiving end of a transfer: puts data frames into a buffer in order and names the next wanted
-// offset.
+// Receiving end of a transfer: puts data frames into a buffer in order, and replies with the next
+// wanted offset.
 //
-// Loss, duplication and resuming need no special case: whatever arrives, the answer is the offset
-// that is wanted next, and only data at just that offset is taken.
+// Loss, duplication and resuming need no special case: the reply to any frame is the offset that is
+// wanted next, and only data at exactly that offset is accepted.
 #pragma once
 
 #include <cstddef>
@@ -15,20 +15,20 @@ namespace robosync::link {
 
 class Receiver {
 public:
-  // Starts a transfer into `buffer`; the same size, name and buffer as the one under way resumes it.
-  // too_large when it does not fit, with the size of the buffer: then no transfer is under way.
-  // `base`: pieces may be of it; it must stay until the transfer is over.
+  // Starts a transfer into `buffer`, or resumes the current one if size, name and buffer are the same.
+  // If it does not fit, returns too_large with the size of the buffer; then no transfer is active.
+  // `base`: pieces may copy from it; it must stay valid until the transfer is over.
   TransferStatus begin(const Begin& begin, std::span<std::byte> buffer,
                        std::span<const std::byte> base = {});
-  // Takes `bytes` if they are just what is wanted next, else leaves everything as it was.
+  // Accepts `bytes` if they are exactly those wanted next; otherwise changes nothing.
   TransferStatus data(std::uint32_t offset, std::span<const std::byte> bytes);
-  // The same with the pieces of a message.
+  // Like data(), for the pieces of a message.
   TransferStatus pieces(std::uint32_t offset, std::span<const std::byte> pieces);
   TransferStatus status() const;
   [[nodiscard]] bool complete() const { return active_ && next_ == size_; }
-  // What was received so far.
+  // The bytes received so far.
   std::span<const std::byte> bytes() const { return buffer_.first(next_); }
-  // The name announced by begin(). Comparing it with the bytes is the caller's part.
+  // The name that begin() announced. The caller compares it with the bytes.
   const ProgramHash& hash() const { return hash_; }
   // Forgets the transfer; the next begin() starts from offset 0.
   void reset() { *this = {}; }

@@ -1,5 +1,5 @@
-// Payload structs to bytes and back. Both ends are little-endian, so a struct without padding is
-// its wire form; this is the one place that relies on it.
+// Converts payload structs to bytes and back. Both ends are little-endian, so a struct without padding
+// is its own wire form. Only this file relies on that.
 #pragma once
 
 #include <bit>
@@ -22,7 +22,7 @@ std::span<const std::byte> wire_bytes(const T& payload) {
   return std::as_bytes(std::span<const T, 1>(&payload, 1));
 }
 
-// Reads the struct a message starts with (Data, ImageData). False when the bytes are too few.
+// Reads the struct that a message begins with (Data, ImageData). False if there are too few bytes.
 template <Payload T>
 [[nodiscard]] bool read_prefix(std::span<const std::byte> bytes, T& payload) {
   if (bytes.size() < sizeof(T)) return false;
@@ -30,7 +30,7 @@ template <Payload T>
   return true;
 }
 
-// Reads a struct that is the whole message. False when the length is not its length.
+// Reads a struct that is the whole message. False if the length differs.
 template <Payload T>
 [[nodiscard]] bool read_payload(std::span<const std::byte> bytes, T& payload) {
   return bytes.size() == sizeof(T) && read_prefix(bytes, payload);

@@ -45,8 +45,8 @@ Runtime::Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events
                      .processing = shared_.processing},
                     step_thread_, layers::kHalted) {}
 
-// A part gets references to others that are not constructed yet: no constructor may use what it is
-// given, only keep it.
+// A part gets references to parts that are not constructed yet: a constructor may only store its
+// references, not use them.
 Runtime::Shared& Runtime::share(std::span<std::byte> arena) {
   static_assert(sizeof(Shared) / port::kArenaScale <= policy::info_of(policy::Part::shared).bytes,
                 "see policy/memory.def");
@@ -81,8 +81,8 @@ bool Runtime::start() {
   return monitor_.start();
 }
 
-// Everything is counted from the verified image, so that no image can say that it needs less. Not
-// inlined, as load() and start_program(): what one has on the stack is gone before the other.
+// Computes everything from the verified image, so that no image can claim to need less. Not inlined,
+// like load() and start_program(), so that their stack frames do not add up.
 vm::Verdict Runtime::check(std::span<const std::byte> bytes) {
   vm::Image image;
   const vm::Verdict verdict = vm::verify(bytes, limits_, image);
@@ -108,8 +108,7 @@ vm::Verdict Runtime::activate(std::span<const std::byte> bytes, bool named) {
   return {};
 }
 
-// The image may stand anywhere in the room, also where the new program's parts will stand: so it
-// is moved first.
+// The image may be anywhere in the room, even where the new program's parts go, so it is moved first.
 bool Runtime::load(std::span<const std::byte> bytes) {
   memory_.lay_out(next_);
   const std::span<std::byte> place = memory_.image().first(bytes.size());
@@ -121,9 +120,9 @@ bool Runtime::load(std::span<const std::byte> bytes) {
   return true;
 }
 
-// Nobody can say beforehand at which count of the processor's clock a program comes: the line, its
-// bytes and the oscillators behind them are not in step with it. What few bits differ, the
-// generators spread (layers/frames.cpp).
+// The count of the processor's clock at which a program arrives is unpredictable: the line, its bytes
+// and their oscillators are not synchronous with it. The generators spread the few bits that differ
+// (layers/frames.cpp).
 std::uint32_t Runtime::choose_seed(std::uint32_t of_image) const {
   if (given_seed_ != 0) return given_seed_;
   if (of_image != 0) return of_image;
@@ -149,7 +148,7 @@ void Runtime::clear() {
   memory_.clear();
 }
 
-// The threads wait until all of them are there.
+// The threads wait until all of them have been added.
 bool Runtime::start_program() {
   const layers::LoadedProgram& program = shared_.program;
   threads_.take_stacks(memory_);
@@ -174,8 +173,8 @@ bool Runtime::start_program() {
   return true;
 }
 
-// Where there are SAFETY rules, nothing moves before they know: the program's clock begins, at the
-// latest at the time that is set here, when they do (look_at_rules()).
+// With SAFETY rules, nothing moves until their readings are known: program time begins when they are,
+// at the latest at the time that is set here (look_at_rules()).
 void Runtime::go() {
   const auto lock = kernel_.lock();
   const vm::Image& image = shared_.program.image;
@@ -190,7 +189,7 @@ void Runtime::go() {
   if (!image.has_safety()) begin();
 }
 
-// … at a tick that none of the program's threads can have missed.
+// Begins program time, at a tick that none of the program's threads can have missed.
 void Runtime::begin() {
   const auto lock = kernel_.lock();
   const kernel::Time meant = trace_.activated_at();
@@ -205,7 +204,7 @@ void Runtime::begin() {
   algorithms_.begin();
 }
 
-// Done in the safety thread, which outranks everybody: at once.
+// The safety thread does it, which outranks all other threads: so it takes effect immediately.
 void Runtime::say(bool stopped) {
   stopped_ = stopped;
   kernel_.signal(monitor_.thread(), safety::Monitor::kPerson);
@@ -263,7 +262,7 @@ void Runtime::hold_to_budgets(bool alive) {
   if (over != nullptr) port::stop_overrun(kernel_, *over);
 }
 
-// The first time it is reported, as a missed deadline of the step thread.
+// Reports the first halt, as a missed deadline of the step thread.
 void Runtime::halt(kernel::Duration stuck_for) {
   control_.halt_for_good();
   if (halted_) return;
@@ -273,15 +272,15 @@ void Runtime::halt(kernel::Duration stuck_for) {
   trace_.emit(EventKind::deadline, trace_.now(), step_thread_.rank(), 0, late);
 }
 
-// What is unknown when program time begins trips before the first step: no thread of the program has
-// run since.
+// A reading that is unknown when program time begins trips its rule before the first step: no thread of
+// the program has run since.
 kernel::Time Runtime::look_at_rules() {
   if (begun_ && !sensors_.are_fed()) [[likely]]
     return safety_rules_.look();
   return look_at_feeds();
 }
 
-// … first, and whether the program begins.
+// Delivers fed readings first, and decides whether program time begins.
 kernel::Time Runtime::look_at_feeds() {
   if (!begun_ && !running_) return kernel::kForever;
   const kernel::Time now = kernel_.now();

@@ -1,8 +1,8 @@
-// The runtime of one robot: the safety thread, and the program's threads and layers made from an
-// image. The same on the board (boards/common/main.cpp) and on the host (sim/simulator.cpp).
+// The runtime of one robot: the safety thread, and the program's threads and layers, which are made
+// from an image. The same on the board (boards/common/main.cpp) and on the host (sim/simulator.cpp).
 //
-// What a program needs stands in the arena, laid out anew at each activation (layers/memory.hpp).
-// Inside the object is what is there without a program: the kernel's and safety's control blocks,
+// The memory of a program is in the arena, laid out anew at each activation (layers/memory.hpp). The
+// object itself holds what exists without a program, such as the kernel's and safety's control blocks,
 // and what is closed to the behaviours' threads.
 #pragma once
 
@@ -43,75 +43,75 @@ namespace robosync {
 
 class Runtime final : private safety::Supervised {
 public:
-  // `arena` is the memory for programs that `memory` describes (layers::Memory), and the runtime's
-  // alone.
+  // `arena` is the memory for programs that `memory` describes (layers::Memory). Only the runtime uses
+  // it.
   Runtime(kernel::Kernel& kernel, boards::Board& board, EventSink& events,
           std::span<std::byte> arena, const policy::BoardMemory& memory);
 
-  // Creates the safety thread. Once, before Kernel::run(). False when the kernel has no place.
+  // Creates the safety thread. Call it once, before Kernel::run(). False if the kernel has no room.
   bool start();
 
-  // Verifies `image` and, if it may run and fits, takes a copy of it in the place of the running
-  // program; otherwise that goes on. Called from a thread of category `system`: it has the lowest
-  // rank, so when it runs no step is under way. Or before Kernel::run(). `named`: its name is that of its bytes; else it is
-  // refused, if for nothing else then for that.
+  // Verifies `image` and, if it may run and fits, replaces the running program with a copy of it;
+  // otherwise the running program continues. `named`: the image's name is the one computed from its
+  // bytes; if not, the image is refused, after all other checks. Call it before Kernel::run(), or from
+  // a thread of category `system`: that has the lowest rank, so no step is in progress when it runs.
   vm::Verdict activate(std::span<const std::byte> image, bool named = true);
-  // Ends the running program; its actuators are released.  [as activate()]
+  // Ends the running program and releases its actuators.  [as activate()]
   void clear();
 
-  // Memory that nobody uses until the next activation, as much as an image can have: one may be
-  // received into it.
+  // Memory that is unused until the next activation, at most as large as an image may be: the next
+  // image may be received into it.
   std::span<std::byte> room() {
     const std::span<std::byte> room = memory_.room();
     return room.first(std::min<std::size_t>(room.size(), limits_.image_bytes));
   }
-  // Of the running program, and of the last one that activate() has verified.
+  // The needs of the running program, and those of the last one that activate() has verified.
   const policy::Needs& needs() const { return memory_.needs(); }
   const policy::Needs& checked_needs() const { return next_; }
   const policy::BoardMemory& board_memory() const { return memory_.board(); }
 
-  // A person's word: all outputs go to their safe state at once and stay there, whatever program runs or comes,
-  // until resume(); of that, what the running program's SAFETY rules halt stays halted.  [thread]
+  // A person's order: all outputs go to their safe state immediately and stay there, whatever program runs, until
+  // resume(). Actuators that the running program's SAFETY rules halt stay halted after that.  [thread]
   void stop() { say(true); }  // or from an interrupt of the kernel's level
   void resume() { say(false); }
   bool stopped() const { return stopped_; }
-  // This thread has its share of the processor whatever the program does. Before Kernel::run().
+  // Gives the link's thread its share of the processor, whatever the program does. Before Kernel::run().
   void share_with(const kernel::Thread& link) { shared_.processing.share_with(link); }
-  // How it waits when it has nothing more to do.  [that thread]
+  // Kernel::wait() for the link's thread when it has nothing more to do; ends its turn.  [the link's thread]
   kernel::Events rest_link(kernel::Events mask, kernel::Time deadline) {
     return shared_.processing.rest_link(mask, deadline);
   }
   // Has a SAFETY rule of the running program tripped since it began?
   bool has_tripped() const { return safety_rules_.have_tripped(); }
 
-  // A reading for a fed channel: now (at_us 0) or at a program time. Sensors are fed whose driver
-  // is virtual_sensor, and those with period 0. The unknown value is a reading that failed.
+  // A reading for a fed channel: now (at_us 0) or at a program time. Sensors with the driver
+  // virtual_sensor or with period 0 are fed. The unknown value is a failed reading.
   link::FeedResult feed(const link::Feed& feed);
 
-  // Everything but what only the link knows: bad_frames and lost_events.
+  // Fills in everything except bad_frames and lost_events, which only the link knows.
   void fill_status(link::Status& status) const;
   void fill_devices(link::Devices& devices) const;
   bool running() const override { return running_; }
   const vm::Image& image() const { return shared_.program.image; }  // of the running program
   const vm::Limits& limits() const { return limits_; }
 
-  // KEPT numbers begin with these, in each program that has them. Before activate(); the table stays where it is.
+  // The initial values of KEPT numbers, for each program that has them. Before activate(); the table must stay valid.
   void begin_with(std::span<const layers::KeptNumber> kept) { kept_ = kept; }
-  // Those of the running program as they are now, all of one step. Returns how many.
+  // The current values of the running program, all from the same step. Returns how many.
   std::size_t fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept) const;
 
-  // Measures with `sampler` in place of the drivers. Before activate().
-  // That is a simulation: its program does not wait for a first reading.
+  // Measures with `sampler` instead of the drivers. Before activate().
+  // This makes it a simulation: its program does not wait for first readings.
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
 
-  // The seed of the random numbers, whatever the next image says; 0: what it says, or, where it says
-  // none, 1 in a simulation and something new on a board.  Before activate().
+  // The seed of the random numbers, which overrides that of the image. 0: the image's seed; if the image
+  // has none, 1 in a simulation, and a new one each time on a board. Before activate().
   void draw_from(std::uint32_t seed) { given_seed_ = seed; }
 
 private:
   friend struct RuntimePeer;
 
-  // What the behaviours' threads read. It stands at the arena's beginning.
+  // What the behaviours' threads may read. At the start of the arena.
   struct Shared {
     layers::LoadedProgram program;
     layers::Workspace workspace;
@@ -147,16 +147,16 @@ private:
   boards::Board& board_;
   layers::Memory memory_;
   vm::Limits limits_;
-  policy::Needs next_;  // of the last image that was checked
+  policy::Needs next_;  // of the latest image that was checked
 
   std::atomic<bool> running_ = false;
-  std::atomic<bool> stopped_ = false;  // what the person has said last
-  bool halted_ = false;                // this program, by safety
-  bool begun_ = false;                 // its program time; only while it runs
+  std::atomic<bool> stopped_ = false;  // a person's latest order
+  bool halted_ = false;                // safety has halted this program
+  bool begun_ = false;                 // program time has begun; only while a program runs
   std::uint16_t activations_ = 0;
   std::uint32_t given_seed_ = 0;
   std::span<const layers::KeptNumber> kept_;
-  unsigned faults_ = 0;  // of programs that are gone
+  unsigned faults_ = 0;  // of previous programs
   safety::Monitor monitor_;
   layers::Budget budget_;
   kernel::Thread step_thread_;

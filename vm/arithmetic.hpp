@@ -1,8 +1,7 @@
 // The arithmetic of Values: saturating, three-valued, exact.
 //
-// The one definition of what numbers do, for the interpreter and for the compiler's constant
-// folding, so that host and robot agree bit for bit. Any operand may be kUnknown; then so is the
-// result. Every other result lies in kValueMin … kValueMax.
+// The interpreter and the compiler's constant folding both use this, so host and robot agree bit for
+// bit. If an operand is kUnknown, so is the result. Every other result is in kValueMin … kValueMax.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@ namespace robosync::vm {
 
 namespace detail {
 
-// Sum and difference cut off at INT32_MIN and INT32_MAX: one instruction on the M4.
+// Sum and difference, saturated at INT32_MIN and INT32_MAX: one instruction on the M4.
 constexpr std::int32_t cut_off(std::int64_t value) {
   if (value > INT32_MAX) return INT32_MAX;
   return value < INT32_MIN ? INT32_MIN : static_cast<std::int32_t>(value);
@@ -39,7 +38,7 @@ constexpr std::int32_t cut_off_difference(std::int32_t b, std::int32_t c) {
 
 }  // namespace detail
 
-// b + c, both known. What is cut off is one less than the sum, so that it cannot become unknown.
+// b + c, both known. Saturates the sum minus 1, so that the result cannot be kUnknown.
 inline Value add_known(Value b, Value c) {
   return detail::cut_off_sum(detail::cut_off_sum(b - 1, c), 1);
 }
@@ -64,7 +63,7 @@ Value multiply(Value b, Value c);
 // b / c of two numbers in thousandths, rounded half away from zero; anything / 0 is 0.
 Value divide(Value b, Value c);
 
-// b modulo c with the sign of c, so that an angle modulo 360deg is never negative; modulo 0 is 0.
+// b modulo c, with the sign of c, so that an angle modulo 360deg is never negative; modulo 0 is 0.
 constexpr Value modulo(Value b, Value c) {
   if (b == kUnknown || c == kUnknown) return kUnknown;
   if (c == 0) return 0;
@@ -72,7 +71,7 @@ constexpr Value modulo(Value b, Value c) {
   return remainder != 0 && (remainder ^ c) < 0 ? remainder + c : remainder;
 }
 
-// The same for a known b and c > 0.
+// modulo() for a known b and c > 0.
 constexpr Value modulo_positive(Value b, Value c) {
   const Value remainder = b % c;
   return remainder < 0 ? remainder + c : remainder;
@@ -87,24 +86,24 @@ constexpr Value divide_by_whole(Value b, std::int32_t n) {
   return b < 0 ? -quotient : quotient;
 }
 
-// Without its sign; the range is symmetric.
+// The absolute value; the range is symmetric.
 constexpr Value absolute(Value b) {
   return b < 0 ? negate(b) : b;
 }
 
-// The lesser and the greater one.
+// The lesser and the greater value.
 constexpr Value lesser(Value b, Value c) {
-  return b < c ? b : c;  // an unknown is less than all that is known
+  return b < c ? b : c;  // unknown is less than every known value
 }
 constexpr Value greater(Value b, Value c) {
   if (b == kUnknown || c == kUnknown) return kUnknown;
   return b < c ? c : b;
 }
 
-// The multiple of c that is nearest to b, half away from zero; b itself unless c is above 0.
+// The multiple of c nearest to b, half away from zero; b itself unless c is above 0.
 Value round_to(Value b, Value c);
 
-// Sums and products of what was proved to be known and in range: their lower 32 bits.
+// Sums and products of operands proved to be known and in range: the lower 32 bits.
 constexpr Value add_unchecked(Value b, Value c) {
   return static_cast<Value>(static_cast<std::uint32_t>(b) + static_cast<std::uint32_t>(c));
 }
@@ -120,8 +119,8 @@ constexpr Value truth(bool value) {
   return value ? kTrue : kFalse;
 }
 
-// Relations of two known values. An order is the sign of the cut-off difference, spread over the
-// word: that is kTrue or kFalse already, without a branch.
+// Relations of two known values. The sign of the saturated difference, spread over the word, is kTrue
+// or kFalse without a branch.
 inline Value is_less(Value b, Value c) {
   return detail::cut_off_difference(b, c) >> 31;
 }

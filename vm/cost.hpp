@@ -1,8 +1,8 @@
-// What the code of an image costs, rule by rule: for people, who want to know which rule is dear.
-// For the host; the firmware does not link it.
+// The cost of an image's code, rule by rule, to show which rules are expensive. For the host; the
+// firmware does not link it.
 //
-// The figures are what the verifier's own pass finds for each code object, and their sum is what it
-// finds for a step (step_cost()), so there is no second model of the costs.
+// The verifier's own pass computes the cost of each code object, and their sum is its cost of a step
+// (step_cost()), so there is no second cost model.
 #pragma once
 
 #include <algorithm>
@@ -15,25 +15,24 @@
 
 namespace robosync::vm {
 
-// In worst-case M4 instructions; of a response the costliest part between two waits.
+// In worst-case M4 instructions; for a response, the costliest part between two waits.
 struct RuleCost {
-  std::uint32_t condition = 0;  // 0 of a rule without one
+  std::uint32_t condition = 0;  // 0 for a rule without one
   std::uint32_t then_response = 0;
   std::uint32_t else_response = 0;
 
-  // In one step a rule runs one of them.
+  // A rule runs only one of its responses in a step.
   [[nodiscard]] constexpr std::uint32_t worst_response() const {
     return std::max(then_response, else_response);
   }
   [[nodiscard]] constexpr std::uint32_t step() const { return condition + worst_response(); }
 };
 
-// One for each of the image's rules; `costs` has as many places. False for an image whose code
-// would be refused for anything but what a step costs. `image` must be a view that view_image()
-// accepted.
+// Computes the cost of each rule; `costs` has one element per rule. False if the code would be refused
+// for any reason but the cost of a step. `image` must be a view that view_image() accepted.
 [[nodiscard]] bool rule_costs(const Image& image, std::span<RuleCost> costs);
 
-// Of a Machine on the board, where a pointer has 4 bytes.
+// The size of a Machine on the board, where a pointer has 4 bytes.
 inline constexpr std::size_t kMachineBytes = 48;
 static_assert(sizeof(void*) != 4 || sizeof(Machine) == kMachineBytes);
 

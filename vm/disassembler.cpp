@@ -1,7 +1,7 @@
 // Writes one instruction as text: `lt_k     r1, r0, 3`, `cmd      arms MOVE SLOWLY`.
 //
-// Assumes nothing about the word: what is not an instruction, or refers to nothing, is shown as
-// numbers. Works in the caller's buffer only.
+// Assumes nothing about the word: an invalid instruction or reference is shown as numbers. Uses the
+// caller's buffer only.
 #include "vm/disassembler.hpp"
 
 #include "vm/opcode.hpp"
@@ -28,14 +28,14 @@ public:
     for (const char c : text)
       put(c);
   }
-  // Names come from outside: nothing in them shall steer a terminal.
+  // Names come from outside: they must not contain control characters for a terminal.
   void put_name(std::string_view name) {
     for (const char c : name) {
       const auto code = static_cast<unsigned char>(c);
       put(code < 0x20 || code == 0x7F ? '?' : c);
     }
   }
-  // A C++ keyword has an underscore at its end in the lists.
+  // In the lists, a name that is a C++ keyword ends in an underscore.
   void put_identifier(std::string_view name) {
     if (!name.empty() && name.back() == '_') name.remove_suffix(1);
     put(name);
@@ -50,7 +50,7 @@ public:
     while (count > 0)
       put(digits[--count]);
   }
-  // In canonical units, without zeros at the end: 2.5, -0.001, 3.
+  // In canonical units, without trailing zeros: 2.5, -0.001, 3.
   void put_value(Value value) {
     if (value == kUnknown) return put("unknown");
     if (value < 0) put('-');
@@ -81,7 +81,7 @@ private:
   std::size_t length_ = 0;
 };
 
-// The record's name, or what it would be the number of: `verb?7`.
+// The record's name, or if there is none, its kind and number: `verb?7`.
 template <typename Record>
 void put_record(Writer& out, const Image& image, std::span<const Record> records, std::size_t index,
                 std::string_view kind) {
@@ -139,7 +139,7 @@ std::string_view separator(bool first, Operand operand) {
   return operand == Operand::verb || operand == Operand::word ? " " : ", ";
 }
 
-// Is there nothing to write for it?
+// Is the operand omitted from the text?
 bool is_empty(Operand operand, std::uint8_t byte) {
   return operand == Operand::none || (operand == Operand::word && byte == kNoWord);
 }

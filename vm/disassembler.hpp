@@ -8,9 +8,8 @@
 
 namespace robosync::vm {
 
-// One instruction of `image` as text without a newline, names resolved from the image, into
-// `buffer` (always NUL-terminated, cut if too long). Returns the length written. Freestanding: no
-// heap.
+// Writes one instruction of `image` to `buffer` as text without a newline, with names from the image
+// (always NUL-terminated, truncated if too long). Returns the length written. Freestanding: no heap.
 std::size_t disassemble(const Image& image, Word word, std::span<char> buffer);
 
 }  // namespace robosync::vm

@@ -1,16 +1,16 @@
-// How the interpreter comes from one opcode to the next: by a table of where each one's code
-// begins. For interpreter.cpp only.
+// How the interpreter jumps from one opcode to the next: through a table of the addresses of their
+// code. For interpreter.cpp only.
 //
-// On the board the assembler makes the table, out of the labels that the interpreter's first
-// `asm goto` names. gcc makes five instructions of `goto*` (it sets the Thumb bit each time), and
-// where addresses of labels are taken it keeps code for jumps that never come. Assumes the
-// variables `pc`, `word` and `table`, and a label op_NAME for each opcode; on the board also
-// `rare`, where all go that are not frequent.
+// On the board the assembler builds the table, from the labels that the interpreter's first
+// `asm goto` names. gcc compiles `goto*` to five instructions (it sets the Thumb bit each time), and
+// if addresses of labels are taken, it keeps code for jumps that never happen. Assumes the variables
+// `pc`, `word` and `table`, and a label op_NAME for each opcode; on the board also the label `rare`,
+// which handles all opcodes that are not frequent.
 #pragma once
 
-// The opcodes that are reached at once: those of the measured programs, and what the examples have
-// most of. `asm goto` takes no more than these; the others are reached by way of a switch, which
-// takes them three instructions more. (clang-format never comes to rest on this list.)
+// The opcodes that are reached directly: those of the measured programs, and the most frequent ones of
+// the examples. `asm goto` accepts no more labels than these; the others are reached through a switch,
+// which costs three more instructions. (clang-format does not converge on this list.)
 // clang-format off
 #define FREQUENT_OPCODES(X)                                                  \
   X(move) X(load) X(add) X(sub) X(mul)                                       \
@@ -24,7 +24,7 @@
 extern "C" const void* const robosync_dispatch[];
 #define TARGET(name) , op_##name
 #define PLACE(name) ".set .Ldispatch_" #name ", %l[op_" #name "]\n"
-// `place` tells the copies apart: gcc would make one of them again.
+// `place` makes the copies differ, so that gcc does not merge them.
 // clang-format off
 #define JUMP(place)                           \
   "ldr pc, [%0, %1, lsl #2] @ " #place        \
@@ -34,17 +34,17 @@ extern "C" const void* const robosync_dispatch[];
   asm goto(JUMP(place)); \
   __builtin_unreachable()
 #else
-// NOLINTNEXTLINE(bugprone-macro-parentheses): no product, a statement
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a statement, no product
 #define DISPATCH(place) goto* table[word & 0xFF]
 #endif
 
-// Without the `asm`, gcc keeps the `pc` of a jump in a register of its own, and every instruction
-// pays for moving it.
+// Without the `asm`, gcc keeps the `pc` of a jump in a separate register, and every instruction has to
+// move it.
 #define FETCH() \
   word = *pc;   \
   ++pc;         \
   asm volatile("" : "+r"(pc))
-// What stands at the end of a frequent opcode instead of a jump to `next`.
+// Ends a frequent opcode, instead of a jump to `next`.
 #define NEXT(place) \
   FETCH();          \
   DISPATCH(place)

@@ -1,4 +1,4 @@
-// What the verifier, the board and rsc must know of a driver, from vm/drivers.def.
+// What the verifier, the board and rsc need to know about a driver, from vm/drivers.def.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,16 @@
 
 namespace robosync::vm {
 
-// What an actuator's driver puts out on its pin. Pulses say where to go: while they stay as they are, so does the
-// actuator. A level is power: as long as it is there, a motor runs. A picture and tones are on no pin of an actuator's own,
-// but on the lights and the speaker, which a board has once. Either way: a level on its pin or on a second one, which the
-// image has as its `bus`; the other pin is off then. Channel: pulses, by a servo chip, which the image has among its sensors, as
-// it is a device on a bus: `bus` says where, `pin` is the chip's channel. Screen: a picture, on a display, which is among the
-// sensors in the same way. Line: commands to a sound player, on a serial line of the board, which the image has as the `bus`.
-// Panel: a picture, on lights in a chain at its pin, of which a robot has one.
+// The output of an actuator's driver.
+//   pulses      give a position: while they stay the same, the actuator stays where it is
+//   level       is power: a motor runs as long as it is on
+//   picture, tones   go to the lights and the speaker, of which a board has one each, not to a pin of the actuator
+//   either_way  a level on its pin or on a second one, the image's `bus`; the other pin is off then
+//   channel     pulses from a servo chip, which is among the image's sensors because it is a device on a bus: `bus` is its index
+//               there, `pin` the chip's channel
+//   screen      a picture on a display, which is among the sensors in the same way
+//   line        commands to a sound player on a serial line of the board, the image's `bus`
+//   panel       a picture on a chain of lights at its pin; a robot has one panel
 enum class PinUse : std::uint8_t {
   nothing,
   pulses,
@@ -47,7 +50,7 @@ constexpr PinUse pin_use(DriverId driver) {
 constexpr bool has_two_pins(DriverId driver) {
   return pin_use(driver) == PinUse::either_way;
 }
-// What runs as long as its pin is on.
+// It runs as long as its pin is on.
 constexpr bool gives_power(DriverId driver) {
   return pin_use(driver) == PinUse::level || has_two_pins(driver);
 }
@@ -66,7 +69,7 @@ constexpr bool drives_channel(DriverId driver) {
 constexpr bool drives_screen(DriverId driver) {
   return pin_use(driver) == PinUse::screen;
 }
-// Of the serial lines 0 is the link's.
+// Serial line 0 is the link's.
 inline constexpr std::uint8_t kFirstPlayerLine = 1;
 constexpr bool drives_player(DriverId driver) {
   return pin_use(driver) == PinUse::line;
@@ -74,22 +77,22 @@ constexpr bool drives_player(DriverId driver) {
 constexpr bool drives_panel(DriverId driver) {
   return pin_use(driver) == PinUse::panel;
 }
-// What gets its orders in messages, each of which takes its time.
+// It gets its orders in messages, and each message takes time.
 constexpr bool is_told(DriverId driver) {
   return drives_player(driver) || drives_panel(driver);
 }
-// What goes on by itself as long as nobody ends it: it cannot be held in a halt.
+// It continues on its own until it is ended, so it cannot hold in a halt.
 constexpr bool drives_on(DriverId driver) {
   return gives_power(driver) || drives_speaker(driver) || drives_player(driver);
 }
 
-// By what a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, which the
-// image has as the sensor's `bus`, and how long its input is high then. Adc: the voltage of an analog input.
+// How a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, the sensor's
+// `bus` in the image, and how long its input is high after that. Adc: the voltage of an analog input.
 enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc };
 
 struct Sampling {
   Bus bus = Bus::nothing;
-  bool once = false;  // all channels of a sensor are made of the same answers of its device
+  bool once = false;  // all channels of a sensor come from the same transfers
 };
 
 constexpr Sampling sampling_of(DriverId driver) {
@@ -123,7 +126,7 @@ constexpr bool is_asked_once(DriverId driver) {
   return sampling_of(driver).once;
 }
 
-// No sensor's driver is taken for that of an actuator next to it in the list, nor the other way round.
+// A sensor's driver must not be taken for that of an actuator, or the other way round.
 #define SENSOR_DRIVER(name, ...) static_assert(pin_use(DriverId::name) == PinUse::nothing);
 #define ACTUATOR_DRIVER(name, ...) static_assert(bus_of(DriverId::name) == Bus::nothing);
 #include "vm/drivers.def"
@@ -143,56 +146,56 @@ constexpr bool is_by_echo(DriverId driver) {
 constexpr bool is_analog(DriverId driver) {
   return bus_of(driver) == Bus::adc;
 }
-// It measures once, for a while, when a sample tells it to, and may find nothing.
+// It takes a single measurement on request, which takes a while and may find nothing.
 constexpr bool measures_when_told(DriverId driver) {
   return driver == DriverId::vl53l0x;
 }
-// It says nothing when nothing answers: what it measured last grows old.
+// If its device does not answer, there is no new reading, and the last one grows old.
 constexpr bool may_be_silent(DriverId driver) {
   return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver);
 }
 
-// A chip that gives servos their pulses. It has no channels of readings: it is among the sensors so that its bus has one user
-// at a time, and that whether it answers is told. `first_input` is the pin of the board at its OE input.
+// A chip that makes the pulses of servos. It has no readings: it is among the sensors so that its bus has one user at a time, and
+// so that it is reported if it does not answer. `first_input` is the board's pin at the chip's OE input.
 constexpr bool is_servo_chip(DriverId driver) {
   return driver == DriverId::pca9685;
 }
-// A display: it stands there for the same reasons.
+// A display, which is among the sensors for the same reasons.
 constexpr bool is_display(DriverId driver) {
   return driver == DriverId::ssd1306;
 }
-// What is told something in each of its frames, and asked for nothing.
+// It gets data in each of its frames, and has no readings.
 constexpr bool is_served(DriverId driver) {
   return is_servo_chip(driver) || is_display(driver);
 }
 inline constexpr unsigned kMaxDisplays = 2;  // of a program
 inline constexpr std::uint16_t kDisplayFrameMs = 50;
-// Where its pin SA0 can put an SSD1306 (Solomon Systech SSD1306 Rev. 1.1, 8.1.5).
+// The addresses of an SSD1306, selected by its pin SA0 (Solomon Systech SSD1306 Rev. 1.1, 8.1.5).
 inline constexpr std::uint16_t kFirstDisplayAddress = 0x3C;
 inline constexpr std::uint16_t kLastDisplayAddress = 0x3D;
 inline constexpr unsigned kChipChannels = 16;
 inline constexpr unsigned kMaxServoChips = 4;  // of a program
 inline constexpr std::uint16_t kServoFrameMs = 20;
-// Where the six address pins of a PCA9685 can put it (NXP PCA9685 Rev. 4, 7.1.1); at 0x70 all of them answer at power-up (7.1.3).
+// The addresses of a PCA9685, selected by six pins (NXP PCA9685 Rev. 4, 7.1.1); at 0x70 all of them answer at power-up (7.1.3).
 inline constexpr std::uint16_t kFirstChipAddress = 0x40;
 inline constexpr std::uint16_t kAllChipsAddress = 0x70;
 
 // The echoes of one burst must have died away before the next one.
 inline constexpr std::uint16_t kMinEchoPeriodMs = 60;
-// A VL53L0X takes some 33 ms from one result to the next, and has some more for that.
+// A VL53L0X takes some 33 ms from one result to the next; this leaves a margin.
 inline constexpr std::uint16_t kMinRangingPeriodMs = 50;
 
-// Who is sampled more often than that gets no readings; 0: nobody is.
+// The shortest period at which a sensor with this driver gives readings; 0: any.
 constexpr std::uint16_t min_period_ms(DriverId driver) {
   if (is_by_echo(driver)) return kMinEchoPeriodMs;
   return measures_when_told(driver) ? kMinRangingPeriodMs : 0;
 }
 
-// Of a panel `bus` says how its lights lie, and `speed_limit` the colour of a lit one, 0xRRGGBB, of which no part is more than
-// kMostLight: 25 lights of white take 0.3 A then, which a board gets by USB, and not 1.5.
-inline constexpr std::uint8_t kPanelGoesBack = 1;  // each second row is wired from right to left
+// For a panel, `bus` is the layout of its lights, and `speed_limit` the colour of a lit one, 0xRRGGBB. No component exceeds
+// kMostLight: so 25 white lights take 0.3 A, which a board gets from USB, instead of 1.5 A.
+inline constexpr std::uint8_t kPanelGoesBack = 1;  // every second row is wired from right to left
 inline constexpr std::uint8_t kPanelIsLarge =
-    2;  // 8 x 8 lights, with the picture in their midst; else 5 x 5
+    2;                                      // 8 x 8 lights, with the picture centred; else 5 x 5
 inline constexpr unsigned kMostLight = 51;  // of 255
 constexpr bool is_panel(std::uint8_t lay, Value color) {
   if (lay > (kPanelGoesBack | kPanelIsLarge) || color < 0 || color > 0xFF'FFFF) return false;
@@ -201,7 +204,7 @@ constexpr bool is_panel(std::uint8_t lay, Value color) {
   return true;
 }
 
-// Others are reserved by the I2C specification.
+// The I2C specification reserves all other addresses.
 inline constexpr std::uint16_t kFirstAddress = 0x08;
 inline constexpr std::uint16_t kLastAddress = 0x77;
 

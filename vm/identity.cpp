@@ -1,5 +1,5 @@
-// SHA-256 (FIPS 180-4) over the words of an image where they stand: nothing is copied, and what is added at the end is
-// made up word by word. May assume nothing of the bytes; promises that it reads none that has not come.
+// SHA-256 (FIPS 180-4) over the words of an image in place: nothing is copied, and the padding is generated word by word.
+// Assumes nothing about the bytes. Guarantees that it reads only bytes that have been received.
 #include "vm/identity.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::uint32_t load(std::span<const std::byte> bytes, std::uint32_t at) {
   return word;
 }
 
-// Where what counts of the image ends. `image` has a whole header.
+// The end of the bytes that are hashed. `image` must have a complete header.
 std::uint32_t end_of(std::span<const std::byte> image) {
   std::uint16_t lines = 0;
   std::memcpy(&lines, image.data() + offsetof(ImageHeader, source_lines), sizeof lines);
@@ -38,7 +38,7 @@ std::uint32_t end_of(std::span<const std::byte> image) {
   return length - std::min(length, not_counted);
 }
 
-// A word of the image as it counts.
+// A word of the image as it is hashed.
 std::uint32_t counted(std::span<const std::byte> image, std::uint32_t at) {
   static_assert(offsetof(ImageHeader, source_lines) % kWordBytes == 0);
   switch (at) {
@@ -60,7 +60,7 @@ std::uint32_t big_endian(std::uint32_t word) {
 
 }  // namespace
 
-// `bits_at`: the last word of the last block, which holds how long it all was; beyond this block: there are more.
+// `bits_at`: the last word of the last block, which contains the length in bits; if it is past this block, more blocks follow.
 void Identity::take_block(std::span<const std::byte> image, std::uint32_t end,
                           std::uint32_t bits_at) {
   std::array<std::uint32_t, 16> words{};
@@ -105,7 +105,7 @@ Digest Identity::finish(std::span<const std::byte> image) {
   std::uint32_t end = static_cast<std::uint32_t>(image.size());
   if (image.size() >= sizeof(ImageHeader)) end = std::min(end, end_of(image));
   end &= ~(kWordBytes - 1);
-  constexpr std::uint32_t kMark = kWordBytes, kLength = 2 * kWordBytes;  // behind the end
+  constexpr std::uint32_t kMark = kWordBytes, kLength = 2 * kWordBytes;  // after the end
   const std::uint32_t blocks = (end + kMark + kLength + kBlock - 1) / kBlock;
   const std::uint32_t bits_at = blocks * kBlock - kWordBytes;
   while (taken_ < bits_at)

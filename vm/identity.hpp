@@ -1,8 +1,8 @@
-// The name of an image: the beginning of the SHA-256 of what runs of it. So who changes a byte of a program changes its
-// name, and two programs of one name are the same.
+// The name of an image: the first bytes of a SHA-256 over the parts that run. So a change of any byte of a program changes its
+// name, and two programs with one name are the same.
 //
-// Counted as zero are what says how long the image is and the checksums in its header; source lines, which only a host
-// reads, are not counted at all: with them and without, it is the same program.
+// The lengths, the checksum and the name in the header are hashed as zeros. Source lines, which only a host reads, are left
+// out: a program has the same name with and without them.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace robosync::vm {
 
-using Digest = std::array<std::uint32_t, 8>;  // SHA-256 as words, the first one first
+using Digest = std::array<std::uint32_t, 8>;  // SHA-256 as words, in order
 
 class Identity {
 public:
-  // Takes what is new of an image of which these first bytes have come, without keeping them. May assume nothing of them.
+  // Hashes the new bytes of an image of which `received` has arrived so far, without keeping them. Assumes nothing about them.
   void follow(std::span<const std::byte> received);
-  // All of it has come: what is left is taken, and the digest given.
+  // The image is complete: hashes the rest, and returns the digest.
   [[nodiscard]] Digest finish(std::span<const std::byte> image);
 
 private:
@@ -33,10 +33,10 @@ private:
 };
 
 [[nodiscard]] ProgramHash name_of(const Digest& digest);
-// Is an image, of which all has been followed, what its header says that it is? Not when there is no whole header.
+// Does the name in the header of a fully followed image match its bytes? False if the header is incomplete.
 [[nodiscard]] bool is_named(std::span<const std::byte> image, Identity identity);
 
-// Puts the name and the CRC-32 into the header, after bytes were changed. `image` has a whole header.
+// Writes the name and the CRC-32 into the header, after bytes were changed. `image` must have a complete header.
 void seal(std::span<std::byte> image);
 
 }  // namespace robosync::vm

@@ -1,4 +1,4 @@
-// Finds the sections of an image, and the few facts about an image that everybody needs.
+// Finds the sections of an image, and computes the few properties of an image that all users need.
 //
 // Assumes nothing about the bytes; a view is in bounds for any bytes that view_image() accepts.
 #include "vm/image.hpp"
@@ -12,8 +12,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are read in place");
 
-// Gives `records` the place `next`, and moves `next` past them and their padding to 4 bytes. Places
-// are numbers here, as they may lie outside the image until all sections have been seen.
+// Puts `records` at `next`, and moves `next` past them and their padding to 4 bytes. Addresses are
+// numbers here, because they may be outside the image until all sections have been placed.
 template <typename Record>
 void place(std::uintptr_t& next, std::size_t count, std::span<const Record>& records) {
   static_assert(alignof(Record) <= 4);

@@ -1,9 +1,9 @@
 // The compiled program (.rsb): its layout in memory and on the wire.
 //
-// Little-endian, every record a plain struct read in place. Sections follow the header without gaps
-// in the order of sections.def (each padded to 4 bytes), so offsets are derived, never
-// stored, and cannot overlap. An image is data from outside: nothing here may be trusted before
-// verify() said yes.
+// Little-endian; every record is a plain struct that is read in place. Sections follow the header
+// without gaps in the order of sections.def (each padded to 4 bytes), so offsets are derived, never
+// stored, and sections cannot overlap. An image is data from outside: do not trust it before verify()
+// has accepted it.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace robosync::vm {
 using Word = std::uint32_t;  // one instruction: op | a << 8 | b << 16 | c << 24
 
 inline constexpr std::uint32_t kMagic = 0x31425352;  // "RSB1"
-inline constexpr std::uint8_t kFormatMajor = 2;      // a board runs images of its own major only
+inline constexpr std::uint8_t kFormatMajor = 2;      // a board runs only images of its own major
 
 inline constexpr std::uint16_t kNoIndex = 0xFFFF;    // "none" in any u16 index
 inline constexpr std::uint8_t kNoWord = 0xFF;        // CMD without a word
@@ -28,16 +28,16 @@ inline constexpr std::uint8_t kAllActuators = 0xFF;  // target operand of halt: 
 inline constexpr std::uint8_t kNoModifiers = 0xFF;   // Rule::modifiers: none
 inline constexpr std::int16_t kSafetyPriority =
     100;                                            // of the behaviour that holds the SAFETY rules
-inline constexpr std::uint8_t kSafetyBehavior = 0;  // where it stands, if there are any
+inline constexpr std::uint8_t kSafetyBehavior = 0;  // its index, if there are any
 inline constexpr unsigned kFadeTickMs = 100;        // how often a fading variable moves
-inline constexpr unsigned kMaxWindow = 32;          // samples a median is taken of
+inline constexpr unsigned kMaxWindow = 32;          // samples of a median
 inline constexpr unsigned kMaxEdges = 16;           // n TIMES WITHIN
-inline constexpr unsigned kMaxWritable = 32;        // input cells a behaviour can set: one bit each
+inline constexpr unsigned kMaxWritable = 32;        // input cells a behaviour can set: a bit each
 inline constexpr unsigned kMaxBlocks = 16;          // blocks open at once in a response
 inline constexpr unsigned kMinKeyGapMs = 20;        // between two keys of a MOTION
 inline constexpr unsigned kMinAdaptationMs = 100;   // shortest window of adaptive priorities
-inline constexpr int kMaxPriority = 99;             // that a behaviour can be given …
-inline constexpr int kMinPriority = -100;           // … and that one without a number can have
+inline constexpr int kMaxPriority = 99;             // highest that a program can give a behaviour
+inline constexpr int kMinPriority = -100;           // lowest of a behaviour without a number
 
 // Limits of the format. A board may have smaller ones (Limits in verifier.hpp).
 inline constexpr unsigned kMaxBehaviors = 64;
@@ -46,8 +46,8 @@ inline constexpr unsigned kMaxVerbs = 32;      // one bit each in Actuator::verb
 inline constexpr unsigned kMaxWords = 255;
 inline constexpr unsigned kMaxInputs = 255;         // channels and variables
 inline constexpr unsigned kMaxCells = 255;          // frame cells of a behaviour
-inline constexpr unsigned kMaxKept = 16;            // variables: what is kept is one small record
-inline constexpr unsigned kMaxResponseOutput = 64;  // words a response may put out in one step
+inline constexpr unsigned kMaxKept = 16;            // KEPT variables: stored as one small record
+inline constexpr unsigned kMaxResponseOutput = 64;  // output words of a response in one step
 
 enum class Dimension : std::uint8_t {
 #define DIMENSION(name, unit, doc) name,
@@ -62,7 +62,8 @@ enum class Param : std::uint8_t {
   count_
 };
 
-// What carries the values for the {} places of a text that a command says: of no use to what plays and says.
+// These parameters carry the values for the {} places of a text that a command says: verbs that play or say do not use them
+// otherwise.
 inline constexpr std::array kTextParams = {Param::by, Param::times, Param::direction};
 
 enum class DriverId : std::uint8_t {
@@ -75,24 +76,24 @@ enum class DriverId : std::uint8_t {
 };
 
 // What a verb makes its driver do. The image's verb table joins a name to one of these.
-// perform: a MOTION, which no driver knows; the control layer makes moves of it.
-// follow: goes TO a place as move does, and takes the place of the follow before it.
+// perform: a MOTION, unknown to drivers; the control layer turns it into moves.
+// follow: goes TO a place like move, and replaces the previous follow.
 enum class Action : std::uint8_t { move, play, set, stop, perform, follow, count_ };
 
-// What an actuator does when its response ends by interruption, and when safety halts it.
+// What an actuator does when its response is interrupted, and when safety halts it.
 enum class Release : std::uint8_t { hold, rest, coast, count_ };
 
 // Sensor::bus of a sensor on a pin: the level there that reads as 1.
 enum class ActiveLevel : std::uint8_t { low, high, count_ };
 
-// Actuator::bus of a virtual_motion; its pin is the speed that it usually has, in whole units a second
-// (0: what it does takes as long as it is told).
+// Actuator::bus of a virtual_motion; its pin is its usual speed, in whole units per second (0: a
+// command takes as long as it says).
 enum class VirtualMotion : std::uint8_t {
-  goes,    // TO and BY are ways, AT and the limit their speed
-  sweeps,  // … and without a target it goes over its range and back
+  goes,    // TO and BY are distances, AT and the limit their speed
+  sweeps,  // like goes; without a target it sweeps over its range and back
 };
 
-// Actuator::bus of a virtual_output: what the real one puts out, which says what a command takes.
+// Actuator::bus of a virtual_output: the output of the real one, which gives the time of a command.
 enum class VirtualOutput : std::uint8_t {
   level,    // OVER and then FOR
   picture,  // SHOW: FOR; BLINK: its TIMES, or OVER
@@ -103,27 +104,27 @@ enum class RuleKind : std::uint8_t {
   when,       // edge: the condition becomes true
   when_else,  // edge: the chosen side changes; the first known value chooses a side
   while_,     // level: as long as the condition is true
-  every,      // the condition's code gives the time to the next trigger, anew for each
+  every,      // the condition's code computes the time to the next trigger, each time anew
   start,      // once, in the first step; no condition
   watch,      // no response: the truth of its condition is kept in the frame, for responses
   safety,     // level, latched; evaluated by the safety monitor
-  resume,     // follows its safety rule: what lets it go. No response
+  resume,     // follows its safety rule: the condition that releases it. No response
   count_
 };
 
-// What a program remembers. All are inputs like channels, numbered behind them.
+// Kinds of variables. All are inputs like channels, numbered after them.
 enum class VariableKind : std::uint8_t {
   plain,    // REMEMBER
-  state,    // STATE: its value is the place of a label, in thousandths
+  state,    // STATE: its value is the index of a label, in thousandths
   feeling,  // FEELING
   signal,   // counts the SIGNALs
-  band,     // of a CHECK: the place of a band's label, in thousandths; set by the check only
+  band,     // of a CHECK: the index of a band's label, in thousandths; only the check sets it
   timer,    // TIMER: program time of its last RESTART
-  kept,     // REMEMBER … KEPT: plain, and written down when the power goes by what can do so
+  kept,     // REMEMBER … KEPT: plain, and outlasts a power loss where it can be stored
   count_
 };
 
-// What remembers the past for a time word. Its state is words of the program's timer memory.
+// The memory of a time word. Its state is words of the program's timer memory.
 enum class TimerKind : std::uint8_t {
 #define TIMER(name, words, counts, doc) name,
 #include "vm/timers.def"
@@ -136,36 +137,36 @@ using ProgramHash = std::array<std::uint8_t, 8>;
 struct ImageHeader {
   std::uint32_t magic;         // kMagic
   std::uint32_t crc32;         // CRC-32 (IEEE) of everything after this field
-  std::uint32_t total_length;  // bytes, header included, a multiple of 4
+  std::uint32_t total_length;  // bytes, including the header; a multiple of 4
   std::uint8_t format_major;
-  std::uint8_t board;        // for which one it is, as a number made of its name; 0: for none
+  std::uint8_t board;        // the board it is for, a number computed from its name; 0: none
   std::uint16_t opcode_set;  // opcode_set_id() of the compiler's opcodes.def
-  ProgramHash program_hash;  // its name (identity.hpp)
-  std::uint32_t seed;        // of RANDOM and PICK ONE; 0: the runtime takes one
+  ProgramHash program_hash;  // the image's name (identity.hpp)
+  std::uint32_t seed;        // for RANDOM and PICK ONE; 0: the runtime chooses one
   std::uint32_t step_cost;   // worst-case M4 instructions of VM code in one step
-  // Records in each section; of `inputs` and `labels` they are numbers, of `strings` bytes, of `code`
-  // instruction words. Without source_lines (--strip) traces and faults name no lines.
+  // Records in each section; those of `inputs` and `labels` are numbers, of `strings` bytes, of `code`
+  // instruction words. Without source_lines (--strip), traces and faults have no line numbers.
 #define IMAGE_SECTION(records, Record, Count, check, name) Count records;
 #include "vm/sections.def"
 #undef IMAGE_SECTION
-  // How long a robot waits, before program time begins, for what SAFETY rules read.
+  // The longest time that a robot waits for the readings of SAFETY rules before program time begins.
   std::uint16_t safety_start_ms;
 };
 static_assert(sizeof(ImageHeader) == 68);
 
-// Of an algorithm, `bus` says which module of the firmware it is, `address` where its parameters
-// stand in the constants, `first_input` the first of the channels that it reads, which belong to a
-// sensor before it; and of its channels `input` says which of the module's outputs each is. Of a servo chip, which has no
-// channels, `first_input` is the pin of the board at its enable input.
+// For an algorithm, `bus` is the number of its module in the firmware, `address` the index of its
+// parameters in the constants, and `first_input` the first channel that it reads, which belongs to an
+// earlier sensor. Channel::input of its channels is the number of the module's output. For a servo chip, which has no
+// channels, `first_input` is the board's pin at the chip's enable input.
 struct Sensor {
   std::uint16_t name;  // offset in the strings
   DriverId driver;
   std::uint8_t bus;
   std::uint16_t address;    // I2C address or pin
-  std::uint16_t period_ms;  // between two samples; 0: only when fed
+  std::uint16_t period_ms;  // between two samples; 0: only fed
   std::uint8_t first_channel;
   std::uint8_t channel_count;
-  std::uint8_t first_input;  // of an algorithm, or a servo chip; else 0
+  std::uint8_t first_input;  // for an algorithm or a servo chip; else 0
   std::uint8_t reserved;
 };
 static_assert(sizeof(Sensor) == 12);
@@ -173,16 +174,16 @@ static_assert(sizeof(Sensor) == 12);
 struct Channel {
   std::uint16_t name;
   std::uint8_t sensor;
-  std::uint8_t input;  // which of the device's inputs, or its register
+  std::uint8_t input;  // number of the device's input or register
   Dimension dimension;
-  std::uint8_t label_count;  // of a channel whose values are words: value n is label n
-  std::uint16_t stale_ms;    // older than this: unknown; 0: never stale
+  std::uint8_t label_count;  // for a channel whose values are words: value n is label n
+  std::uint16_t stale_ms;    // a reading older than this is unknown; 0: never stale
   std::uint16_t scale_den;   // value = raw * scale_num / scale_den + offset, thousandths
   std::uint16_t first_label;
   std::int32_t scale_num;
   Value offset;
   Value min, max;  // readings are clamped to this range
-  Value change;    // published only if it differs by at least this; 0: on any difference
+  Value change;    // published only if it differs by at least this; 0: any difference
 };
 static_assert(sizeof(Channel) == 32);
 
@@ -221,7 +222,7 @@ struct WordEntry {  // SLOWLY, "greeting.wav", BACKWARD: a name that sets one pa
 };
 static_assert(sizeof(WordEntry) == 8);
 
-// Its number as an input is channels + its place in the section.
+// Its number as an input is the number of channels + its index in the section.
 struct Variable {
   std::uint16_t name;
   VariableKind kind;
@@ -230,17 +231,17 @@ struct Variable {
   std::uint8_t label_count;   // 0 for the other kinds
   std::uint8_t reserved;
   Value initial;   // kUnknown for band
-  Value min, max;  // what is set is clamped to this range
-  Value fades_to;  // only where fade != 0
+  Value min, max;  // values that are set are clamped to this range
+  Value fades_to;  // only if fade != 0
   std::uint32_t
-      fade;  // part of the distance to fades_to left after kFadeTickMs, times 2^31; 0: stays
+      fade;  // fraction of the distance to fades_to left after kFadeTickMs, times 2^31; 0: no fading
 };
 static_assert(sizeof(Variable) == 28);
 
-// A CHECK: puts the band of an input's value into a variable, before the rules see either.
+// A CHECK: stores the band of an input's value in a variable, before the rules read either.
 struct Check {
-  std::uint8_t variable;  // place in the section of variables; of kind band
-  std::uint8_t input;     // channel, or variable that is not a band
+  std::uint8_t variable;  // index in the section of variables; of kind band
+  std::uint8_t input;     // channel, or variable that is no band
   std::uint8_t first_band;
   std::uint8_t band_count;
   std::uint16_t window;     // samples whose median is classified (SMOOTH); 1: the value itself
@@ -248,8 +249,9 @@ struct Check {
 };
 static_assert(sizeof(Check) == 8);
 
-// The first band that has the value is it; the band of last time has it as long as it is inside the
-// wider range (MARGIN); none where stay_low > stay_high. All ends are included.
+// The first band whose range low … high contains the value is chosen. The previous band is kept while
+// the value is in that band's wider range stay_low … stay_high (MARGIN; none if stay_low > stay_high).
+// All ends are inclusive.
 struct Band {
   Value low, high;
   Value stay_low, stay_high;
@@ -259,7 +261,7 @@ static_assert(sizeof(Band) == 16);
 struct Timer {
   TimerKind kind;
   std::uint8_t count;   // counted: rising edges; else 0
-  std::uint16_t state;  // its first word in the timer memory; the timers follow each other there
+  std::uint16_t state;  // its first word in the timer memory, where the timers follow each other
   Value duration;       // in thousandths of a second; changed: the least difference, 0: any
 };
 static_assert(sizeof(Timer) == 8);
@@ -272,9 +274,9 @@ struct Modifiers {
 };
 static_assert(sizeof(Modifiers) == 12);
 
-// A behaviour's frame: its inputs in cells 0 … input_count-1 (latched at the start of each step),
-// its locals (numbers that outlast a step), the truths of its watch rules, in their order, then its
-// registers. With kSafetyPriority it is no behaviour: it holds the SAFETY rules.
+// A behaviour's frame: its inputs in cells 0 … input_count-1 (latched at the start of each step), its
+// locals (numbers that outlast a step), the truths of its watch rules in their order, then its
+// registers. With kSafetyPriority it is no behaviour but holds the SAFETY rules.
 struct Behavior {
   std::int16_t priority;  // 1–99 as written; rules outside a BEHAVIOR get 0, -1, -2 … in file order
   std::uint16_t name;       // kNoIndex: a rule outside a BEHAVIOR
@@ -303,28 +305,28 @@ struct Response {
   std::uint16_t start;   // word index in the code section
   std::uint16_t length;  // words
   std::uint32_t
-      actuators;  // every actuator it can command; re-computed and compared by the verifier
+      actuators;  // every actuator that it can command; recomputed and compared by the verifier
 };
 static_assert(sizeof(Response) == 8);
 
-struct SourceLine {  // first instruction word that comes from `line`
+struct SourceLine {  // the first instruction word that comes from `line`
   std::uint16_t word;
   std::uint16_t line;
 };
 static_assert(sizeof(SourceLine) == 4);
 
 // How priorities adapt: a behaviour that was triggered F times in a window is raised by alpha × F /
-// window_ms in the next one, up to the cap. Of threads only: who owns an actuator is never adapted.
+// window_ms in the next one, up to the cap. This affects threads only, never the ownership of actuators.
 struct Adaptation {
   std::uint16_t alpha;      // thousandths of a priority times a second, for each trigger
-  std::uint16_t window_ms;  // the windows follow each other from activation on
+  std::uint16_t window_ms;  // windows follow each other from activation on
   std::uint8_t cap;         // 1–99
   std::array<std::uint8_t, 3> reserved;
 };
 static_assert(sizeof(Adaptation) == 8);
 
 // A MOTION: a table of key frames. Its tracks follow each other, one for each of its actuators. The
-// command that performs it says which: its `item` is the motion's place, in thousandths.
+// command that performs it has the motion's index, in thousandths, as its parameter `item`.
 struct Motion {
   std::uint16_t name;
   std::uint8_t first_track;
@@ -341,8 +343,8 @@ struct Track {  // its keys follow each other
 static_assert(sizeof(Track) == 4);
 
 struct Key {
-  Value time;  // since the motion began, thousandths of a second; kMinKeyGapMs after the one before
-  Value to;    // where the actuator is then, thousandths of its canonical unit
+  Value time;  // since the motion began, thousandths of a second; keys >= kMinKeyGapMs apart
+  Value to;    // position of the actuator then, thousandths of its canonical unit
 };
 static_assert(sizeof(Key) == 8);
 
@@ -353,17 +355,17 @@ struct Image {
 #include "vm/sections.def"
 #undef IMAGE_SECTION
 
-  // The NUL-terminated string at `offset`; empty when kNoIndex or out of range.
+  // The NUL-terminated string at `offset`; empty if kNoIndex or out of range.
   std::string_view string(std::uint16_t offset) const;
-  // Are there SAFETY rules? Then kSafetyBehavior holds them.
+  // Are there SAFETY rules? If so, kSafetyBehavior holds them.
   [[nodiscard]] bool has_safety() const {
     return !behaviors.empty() && behaviors[kSafetyBehavior].priority == kSafetyPriority;
   }
-  // Mask of the actuators a CMD's target operand means.
+  // The mask of the actuators that the target operand of a CMD names.
   std::uint32_t target_mask(std::uint8_t target) const;
 };
 
-// Sections in the order they stand in the image; also names the place in a verifier's refusal.
+// Sections in the order of the image; also names the place in a verifier's refusal.
 enum class Section : std::uint8_t {
   header,
 #define IMAGE_SECTION(records, Record, Count, check, name) records,
@@ -379,8 +381,8 @@ enum class Section : std::uint8_t {
 // CRC-32 (IEEE 802.3) of `bytes`, continuing from `seed` (0 to begin).
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed = 0);
 
-// The name in an image's header, by which the line and the store know it. Whether it is that of the bytes: identity.hpp.
-// Zeros when there is no whole header, which verifies as too short whatever its name is.
+// The name in an image's header, which the link and the store use. identity.hpp checks whether it matches the bytes.
+// Zeros if the header is incomplete; such an image is refused as too short, whatever its name.
 [[nodiscard]] ProgramHash stated_name(std::span<const std::byte> image);
 
 }  // namespace robosync::vm

@@ -1,8 +1,8 @@
-// The interpreter: one loop over instruction words, one computed goto an instruction.
+// The interpreter: one loop over instruction words, one computed goto per instruction.
 //
-// Compiled -O2 on every target; the instruction counts are part of the contract (opcodes.def). It
-// trusts the verifier: opcodes are known, operands in range, objects end with their terminator.
-// Conditions and responses run in the same loop; what responses alone have is at its end.
+// Compiled with -O2 on every target; the instruction counts are part of the contract (opcodes.def). It
+// trusts the verifier: opcodes are known, operands are in range, and objects end with their
+// terminator. Conditions and responses run in the same loop; opcodes for responses only are at its end.
 #include "vm/interpreter.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace robosync::vm {
 namespace {
 
-// Appends to the output; what does not fit is dropped as a whole.
+// Appends to the output; drops an entry that does not fit as a whole.
 inline void put(Machine& machine, Word word) {
   Word* const output = machine.output;
   if (output == machine.output_end) return;
@@ -30,15 +30,15 @@ inline void put(Machine& machine, Word word, Value value) {
   machine.output = output + 2;
 }
 
-// The whole number that `b` counts the thousandths of. In two instructions: gcc takes four, to
-// multiply by the reciprocal.
+// The whole number of which `b` counts the thousandths. The asm makes gcc use a division, which takes
+// two instructions; a multiplication by the reciprocal takes four.
 inline std::int32_t whole(Value b) {
   Value scale = kScale;
   asm("" : "+r"(scale));
   return b / scale;
 }
 
-// A number from `b` to `c`, in whichever order, both included: Marsaglia's xorshift32, spread over
+// A random number from `b` to `c`, in either order, both inclusive: Marsaglia's xorshift32, scaled to
 // the range by its upper bits. No number is favoured by more than range / 2^32.
 [[gnu::noinline]] Value draw(Machine& machine, Value b, Value c) {
   if (b == kUnknown || c == kUnknown) return kUnknown;
@@ -53,12 +53,12 @@ inline std::int32_t whole(Value b) {
                             static_cast<std::uint32_t>(std::uint64_t{random} * count >> 32));
 }
 
-// A duration is thousandths of a second; unknown and negative ones are none.
+// A duration in thousandths of a second; unknown and negative ones give 0.
 std::uint32_t milliseconds(Value duration) {
   return static_cast<std::uint32_t>(std::max<Value>(duration, 0));
 }
 
-// Is it `time` now, or later? If not, it wakes the machine then.
+// Has `time` come? If not, lowers machine.wake to it.
 [[gnu::noinline]] Value has_come(Machine& machine, Value time) {
   const auto due = static_cast<std::uint32_t>(time);
   if (reached(due, machine.now)) return kTrue;
@@ -66,19 +66,19 @@ std::uint32_t milliseconds(Value duration) {
   return kFalse;
 }
 
-// The time of the step as a value, which no unknown looks like: 1 ms early, once in 49 days.
+// The time of the step as a value, never kUnknown: 1 ms early, once in 49 days.
 Value time_of(const Machine& machine) {
   const auto now = static_cast<Value>(machine.now);
   return now == kUnknown ? kValueMax : now;
 }
 
-// The time since `begin`; it saturates, after 24 days.
+// The time since `begin`; saturates after 24 days.
 Value since(const Machine& machine, Value begin) {
   const std::uint32_t gone = machine.now - static_cast<std::uint32_t>(begin);
   return static_cast<Value>(std::min(gone, static_cast<std::uint32_t>(kValueMax)));
 }
 
-// Has `length` gone by since `begin`? If not, it wakes the machine then.
+// Has `length` passed since `begin`? If not, lowers machine.wake to the time when it will have.
 [[gnu::noinline]] Value has_gone_by(Machine& machine, Value begin, Value length) {
   if (length == kUnknown) return kUnknown;
   const Value gone = since(machine, begin);
@@ -106,7 +106,7 @@ Value run(Machine& machine, const Word* pc, Progress* progress) {
   const auto wide_k = [&] { return constants[operand_wide(word)]; };
 #if defined(__thumb2__)
   const void* const* table = robosync_dispatch;
-  asm("" : "+r"(table));  // stays in its register
+  asm("" : "+r"(table));  // keeps it in a register
   FETCH();
   // clang-format off
   asm goto(
@@ -224,7 +224,7 @@ zero_divide:
   result = 0;
   goto store;
 
-op_min:  // an unknown is less than all that is known
+op_min:  // unknown is less than every known value
   result = b();
   right = c();
   if (result > right) result = right;
@@ -246,8 +246,8 @@ op_max_k:
   if (result != kUnknown && result < right) result = right;
   goto store;
 
-// A comparison with a constant, and one of two cells that becomes the first once the right one is
-// known. A constant is: the verifier has looked.
+// A comparison of two cells, which continues as one with a constant once its right operand is known. A
+// constant is always known: the verifier has checked that.
 #define COMPARE(name, relation)                             \
   op_##name : right = c();                                  \
   result = right;                                           \
@@ -320,8 +320,8 @@ op_unless:
 op_unless_known:
   if (a() == kUnknown) goto ahead;
   goto next;
-  // An unknown is less than all that is known. So an unknown right side makes no order true, and an
-  // unknown left side none that wants it greater.
+  // Unknown is less than every known value. So with an unknown right side neither `<` nor `<=` is true,
+  // and with an unknown left side neither `>` nor `>=`.
 #define UNLESS(name, holds)                     \
   op_unless_##name : right = b();               \
   goto unless_##name;                           \
@@ -348,7 +348,7 @@ ahead:
   pc += operand_wide(word);
   goto next;
 
-  // A loop's cell says how often it has still to run, this time included.
+  // A loop's cell contains the number of remaining rounds, including the current one.
 op_times:
   result = wide_k();
   goto store;

@@ -1,4 +1,4 @@
-// Opcodes and what is known of each at compile time, derived from opcodes.def.
+// The opcodes and their compile-time properties, derived from opcodes.def.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ enum class Opcode : std::uint8_t {
   count_
 };
 
-// What a byte of an instruction word means; opcodes.def explains each. The numbers are in the
-// opcode set's id: a new kind takes the next one.
+// What a byte of an instruction word means; opcodes.def explains each kind. The numbers are part of
+// the opcode set's id: a new kind takes the next number.
 enum class Operand : std::uint8_t {
   none = 0,
   write = 1,
@@ -45,7 +45,7 @@ enum class Operand : std::uint8_t {
   whole8 = 23
 };
 
-// Where an opcode may stand: bits.
+// Where an opcode is allowed: bits.
 enum class Context : std::uint8_t { condition = 1, response = 2, safety = 4, acting = 6, any = 7 };
 
 // Which instruction runs next.
@@ -63,21 +63,21 @@ enum class Flow : std::uint8_t {
   pause
 };
 
-// What a run leaves behind, besides what it writes into the frame.
+// The effects of an instruction besides writing to the frame.
 enum class Effect : std::uint8_t { none, division, event, set, param, command, log, alert, halt };
 
 struct OpcodeInfo {
   std::string_view name;
-  std::array<Operand, 3> operands;  // A, B, C; wide kinds in B take C too
+  std::array<Operand, 3> operands;  // A, B, C; a wide kind in B includes C
   Context contexts;
   Flow flow;
   Effect effect;
-  std::uint16_t cost;  // worst-case Cortex-M4 instructions, dispatch included
+  std::uint16_t cost;  // worst-case Cortex-M4 instructions, including dispatch
   std::string_view doc;
 };
 
-// For the host. The board has no room for names and documentation: it has what opcode_traits.hpp
-// makes of this.
+// For the host. The board has no room for names and documentation: it uses the table that
+// opcode_traits.hpp makes from this.
 inline constexpr std::array<OpcodeInfo, static_cast<std::size_t>(Opcode::count_)> kOpcodes = {{
 #define OPCODE(name, a, b, c, contexts, flow, effect, cost, doc) \
   {                                                              \
@@ -96,23 +96,23 @@ constexpr const OpcodeInfo& info_of(Opcode opcode) {
   return kOpcodes[static_cast<std::size_t>(opcode)];
 }
 
-// ---- what kinds of operands have in common
+// ---- properties of operand kinds
 
 // Does it take the bytes of B and C together?
 constexpr bool is_wide(Operand kind) {
   return kind == Operand::const16 || kind == Operand::count16 || kind == Operand::ahead ||
          kind == Operand::back || kind == Operand::string;
 }
-// Is it a cell that the instruction writes a number or a truth into?
+// Is it a cell to which the instruction writes a number or a truth?
 constexpr bool is_written(Operand kind) {
   return kind == Operand::write || kind == Operand::write_truth || kind == Operand::write_same ||
          kind == Operand::update_truth || kind == Operand::local || kind == Operand::variable;
 }
-// Is it a cell that may be an input, which is read or set?
+// Is it a cell that is read or set and may be an input?
 constexpr bool may_be_input(Operand kind) {
   return kind == Operand::read || kind == Operand::read_truth || kind == Operand::variable;
 }
-// Is the constant the number itself, not thousandths of it?
+// Is the constant the number itself, not its thousandths?
 constexpr bool is_whole(Operand kind) {
   return kind == Operand::whole8 || kind == Operand::divisor8;
 }
@@ -120,7 +120,7 @@ constexpr bool is_whole(Operand kind) {
 constexpr bool is_positive(Operand kind) {
   return kind == Operand::positive8 || kind == Operand::divisor8 || kind == Operand::count16;
 }
-// The kind that this one narrows, if it does: the word looks the same, but less may stand there.
+// The kind that this one narrows, if any: the encoding is the same, but fewer operands are allowed.
 constexpr Operand widened(Operand kind) {
   switch (kind) {
     case Operand::positive8:
@@ -134,9 +134,9 @@ constexpr Operand widened(Operand kind) {
   }
 }
 
-// ---- what ways to go on have in common
+// ---- properties of flows
 
-// Does it leave blocks, and what is known inside of them, as they are?
+// Does it leave blocks, and what is known inside them, unchanged?
 constexpr bool is_straight(Flow flow) {
   return flow == Flow::next || flow == Flow::end;
 }
@@ -146,7 +146,7 @@ constexpr bool begins_loop(Flow flow) {
 constexpr bool ends_loop(Flow flow) {
   return flow == Flow::count_end || flow == Flow::loop_end || flow == Flow::poll_end;
 }
-// How a loop ends that begins like this.
+// The end of a loop with this begin.
 constexpr Flow end_of(Flow begin) {
   switch (begin) {
     case Flow::count_begin:
@@ -157,11 +157,11 @@ constexpr Flow end_of(Flow begin) {
       return Flow::poll_end;
   }
 }
-// Does the run always stop here, to go on in a later step?
+// Does the run always stop here, and continue in a later step?
 constexpr bool always_pauses(Flow flow) {
   return flow == Flow::pause || flow == Flow::poll_begin;
 }
-// Does it, or may it?
+// May the run stop here?
 constexpr bool may_pause(Flow flow) {
   return always_pauses(flow) || flow == Flow::poll_end;
 }
@@ -185,7 +185,7 @@ constexpr unsigned output_words(Effect effect) {
   return 0;
 }
 
-// By TimerKind: the time word that remembers in timers of this kind.
+// By TimerKind: the time word that uses timers of this kind.
 inline constexpr std::array<Opcode, static_cast<std::size_t>(TimerKind::count_)> kTimeWords = {
 #define TIMER(name, words, counts, doc) Opcode::name,
 #include "vm/timers.def"
@@ -194,7 +194,7 @@ inline constexpr std::array<Opcode, static_cast<std::size_t>(TimerKind::count_)>
 constexpr Opcode time_word_of(TimerKind kind) {
   return kTimeWords[static_cast<std::size_t>(kind)];
 }
-// The kind of the timers that it remembers in; count_ of what is no time word.
+// The kind of timers that it uses; count_ if it is no time word.
 constexpr TimerKind timer_kind_of(Opcode time_word) {
   std::size_t kind = 0;
   while (kind < kTimeWords.size() && kTimeWords[kind] != time_word)
@@ -235,9 +235,9 @@ constexpr std::uint16_t operand_wide(Word word) {
   return static_cast<std::uint16_t>(word >> 16);
 }
 
-// Changes whenever opcodes.def changes in a way that old images would be misread (names, order,
-// operands): 16 bits of an FNV-1a hash over them. Compared on both ends before an image runs. What an
-// operand may be is the verifier's matter, so narrowed kinds count as what they narrow.
+// Changes whenever opcodes.def changes such that old images would be misread (names, order, operands):
+// 16 bits of an FNV-1a hash over them. Both ends compare it before an image runs. The verifier checks
+// which operands are allowed, so a narrowed kind counts as the kind that it narrows.
 constexpr std::uint16_t opcode_set_id() {
   std::uint32_t hash = 2166136261u;
   for (const OpcodeInfo& info : kOpcodes) {

@@ -1,5 +1,5 @@
-// What the board knows of each opcode at run time: its line of opcodes.def without the name, the
-// documentation and the cost, packed into one word.
+// The properties of each opcode on the board at run time: its line of opcodes.def without name,
+// documentation and cost, packed into one word.
 #pragma once
 
 #include "vm/opcode.hpp"
@@ -13,7 +13,7 @@ constexpr std::uint32_t as_bits(Enum value) {
 
 class Traits {
 public:
-  constexpr Traits() = default;  // of what is no opcode: it may stand nowhere
+  constexpr Traits() = default;  // of an invalid opcode, which is allowed nowhere
   constexpr explicit Traits(const OpcodeInfo& info)
       : bits_(as_bits(info.operands[0]) | as_bits(info.operands[1]) << kKindBits |
               as_bits(info.operands[2]) << 2 * kKindBits | as_bits(info.contexts) << kContextShift |
@@ -44,7 +44,7 @@ private:
 
 extern const std::array<Traits, kOpcodes.size()> kTraits;
 
-// Of any word. Of a verified one, kTraits[word & 0xFF].
+// For any word. For a verified word, use kTraits[word & 0xFF].
 inline Traits traits_of(Word word) {
   const std::size_t number = word & 0xFF;
   return number < kTraits.size() ? kTraits[number] : Traits();

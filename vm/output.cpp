@@ -1,4 +1,4 @@
-// Reads a response's output back: commands, texts, halts, each with the parameters given to it.
+// Reads a response's output back: commands, texts and halts, each with its parameters.
 #include "vm/output.hpp"
 
 #include "vm/opcode_traits.hpp"
@@ -6,7 +6,7 @@
 namespace robosync::vm {
 namespace {
 
-// What a word with this effect puts out; false: it is no such word.
+// Decodes a word with this effect; false if it is no command, text or halt.
 bool decode(Word word, Effect effect, Output& output) {
   switch (effect) {
     case Effect::command:

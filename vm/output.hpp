@@ -1,4 +1,4 @@
-// Reads what a response has put out (interpreter.hpp, respond()).
+// Reads the output of a response (interpreter.hpp, respond()).
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace robosync::vm {
 
 enum class OutputKind : std::uint8_t { command, log, alert, halt };
 
-// Nothing is set but what `kind` has, since the board reads these in a hurry.
+// Only the members that `kind` uses are set, because this is time-critical on the board.
 struct Output {
   OutputKind kind;
   std::uint16_t text;   // log, alert: offset in the strings
@@ -19,14 +19,14 @@ struct Output {
   std::uint8_t verb;    // index in the verb table
   std::uint8_t word;    // index in the word table, or kNoWord
   std::uint8_t given;   // bit p: params[p] was given; the others are undefined
-  // As computed: kUnknown where the program used a reading that is not known.
+  // As computed: kUnknown if the program used an unknown reading.
   std::array<Value, static_cast<std::size_t>(Param::count_)> params;
 };
 
 class OutputReader {
 public:
   explicit OutputReader(std::span<const Word> words) : words_(words) {}
-  // The next one; false when there is none left, or when what follows is not a response's output.
+  // Reads the next output; false if none is left, or if the next word is no output of a response.
   [[nodiscard]] bool next(Output& output) { return !words_.empty() && read(output); }
 
 private:

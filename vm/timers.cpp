@@ -1,5 +1,5 @@
-// The time words. What each one means to a program: docs/language.md. With an unknown operand the
-// result is unknown and the memory is kept, except where it says otherwise here.
+// The time words. docs/language.md defines what each one means to a program. With an unknown operand,
+// the result is unknown and the state is kept, unless noted otherwise here.
 #include "vm/timers.hpp"
 
 #include "vm/arithmetic.hpp"
@@ -8,15 +8,15 @@
 namespace robosync::vm {
 namespace {
 
-// True in this step only: the condition is looked at again in the next millisecond.
+// True in this step only: the condition is evaluated again in the next millisecond.
 Value happened(Machine& machine) {
   machine.event = true;
   wake_at(machine, machine.now + 1);
   return kTrue;
 }
 
-// state: kNotHeld, kHeld, or the time when it will have been true for long enough. False and
-// unknown restart it.
+// state: kNotHeld, kHeld, or the time when `b` will have been true for long enough. False and unknown
+// restart it.
 Value held(Machine& machine, std::uint32_t duration, std::uint32_t& state, Value b) {
   constexpr std::uint32_t kNotHeld = 0;
   constexpr std::uint32_t kHeld = UINT32_MAX;
@@ -35,8 +35,8 @@ Value held(Machine& machine, std::uint32_t duration, std::uint32_t& state, Value
   return kFalse;
 }
 
-// Notes in `flag` of `state` whether `truth` is true; was it not, and is now? An unknown changes
-// nothing.
+// Stores in `flag` of `state` whether `truth` is true. Returns whether it is true now and was not
+// before. An unknown changes nothing.
 bool rises(std::uint32_t& state, std::uint32_t flag, Value truth) {
   if (truth == kUnknown) return false;
   const bool was = (state & flag) != 0;
@@ -44,7 +44,7 @@ bool rises(std::uint32_t& state, std::uint32_t flag, Value truth) {
   return truth == kTrue && !was;
 }
 
-// state[0]: kWasTrue, and how many edges are remembered; state[1 …]: their times, the oldest first.
+// state[0]: kWasTrue, and the number of stored edges; state[1 …]: their times, the oldest first.
 Value counted(Machine& machine, const Timer& timer, std::uint32_t* state, Value b) {
   constexpr std::uint32_t kWasTrue = 1U << 31;
   const auto duration = static_cast<std::uint32_t>(timer.duration);
@@ -67,8 +67,8 @@ Value counted(Machine& machine, const Timer& timer, std::uint32_t* state, Value 
   return enough ? happened(machine) : kFalse;
 }
 
-// state[0]: the time of the first one's last edge; state[1]: the flags. Each operand has a memory
-// of its own: an unknown keeps it, and only an unknown second one makes the result unknown.
+// state[0]: the time of the last edge of `a`; state[1]: the flags. Each operand has its own flag, which
+// an unknown keeps. Only an unknown `b` makes the result unknown.
 Value sequence(Machine& machine, std::uint32_t duration, std::uint32_t* state, Value a, Value b) {
   constexpr std::uint32_t kFirstWasTrue = 1;
   constexpr std::uint32_t kSecondWasTrue = 2;
@@ -85,7 +85,7 @@ Value sequence(Machine& machine, std::uint32_t duration, std::uint32_t* state, V
   return b == kUnknown ? kUnknown : kFalse;
 }
 
-// state: 1 when it was true.
+// state: 1 if it was true.
 Value latch(std::uint32_t& state, Value enter, Value stay) {
   const Value result = enter | (truth(state != 0) & stay);
   if (result != kUnknown) state = result == kTrue ? 1 : 0;
@@ -102,7 +102,7 @@ Value rose(Machine& machine, std::uint32_t& state, Value b) {
   return b == kTrue && was_false ? happened(machine) : kFalse;
 }
 
-// state: the reference, so that 0 stands for none (unknown).
+// state: the reference value, encoded so that 0 means none (unknown).
 Value changed(Machine& machine, Value least, std::uint32_t& state, Value b) {
   constexpr auto kNone = static_cast<std::uint32_t>(kUnknown);
   if (b == kUnknown) return kUnknown;

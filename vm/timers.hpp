@@ -1,22 +1,21 @@
-// The time words: what a condition remembers of the steps before.
+// The time words: what a condition remembers from earlier steps.
 //
-// Each call is one evaluation of one timer (image.hpp, TimerKind) at machine.now. Its state in the
-// timer memory is 0 at the start of the program; any other content is harmless. Times are
-// milliseconds that may wrap: only differences count, and no difference that matters is longer than
-// a duration can be (24 days).
+// Each call evaluates one timer (image.hpp, TimerKind) at machine.now. Its state in the timer memory
+// is 0 at the start of the program; any other content is harmless. Times are milliseconds that may
+// wrap: only differences count, and no relevant difference exceeds the longest duration (24 days).
 #pragma once
 
 #include "vm/interpreter.hpp"
 
 namespace robosync::vm {
 
-// What the instruction `word`, one of the time words, gives. Lowers machine.wake to the time when
-// that may change without new inputs, and sets machine.event where it is true for one step only.
+// The result of the time word `word`. Lowers machine.wake to the time when it may change without new
+// inputs, and sets machine.event if it is true for one step only.
 [[nodiscard]] Value time_word(Machine& machine, Word word);
 
 struct TimerInfo {
-  std::uint8_t words;  // of the timer memory; where it counts, one more for each edge
-  bool counts;         // does Timer::count say something? If not, it is 0
+  std::uint8_t words;  // of timer memory; if it counts, one more for each edge
+  bool counts;         // does it use Timer::count? If not, that is 0
 };
 inline constexpr std::array<TimerInfo, static_cast<std::size_t>(TimerKind::count_)> kTimers = {{
 #define TIMER(name, words, counts, doc) {words, counts},
@@ -27,12 +26,12 @@ constexpr const TimerInfo& info_of(TimerKind kind) {
   return kTimers[static_cast<std::size_t>(kind)];
 }
 
-// Words that a timer takes up in the timer memory. It is one the verifier would accept.
+// Words that a timer takes in the timer memory. The verifier must accept the timer.
 constexpr unsigned timer_words(const Timer& timer) {
   return info_of(timer.kind).words + 0U + timer.count;
 }
 
-// `now` is `time`, or later.
+// Whether `now` is `time` or later.
 constexpr bool reached(std::uint32_t time, std::uint32_t now) {
   return static_cast<std::int32_t>(now - time) >= 0;
 }

@@ -1,4 +1,4 @@
-// What the files of the verifier share; not for others.
+// Shared by the files of the verifier; not for other code.
 #pragma once
 
 #include "vm/opcode.hpp"
@@ -6,24 +6,24 @@
 
 namespace robosync::vm {
 
-// What is verified, and the reason found against it. The parts return false when they found one.
+// The image that is verified, and the reason to refuse it. The parts return false if they find one.
 struct Verification {
   const Image& image;
   const Limits& limits;
   Verdict verdict = {};
   std::uint64_t step_cost = 0;   // of the code checked so far
-  std::uint32_t words = 0;       // of code looked at, again and again what is shared
-  std::uint32_t next_timer = 0;  // timers below are taken by conditions checked before
+  std::uint32_t words = 0;       // code words checked; shared code counts each time
+  std::uint32_t next_timer = 0;  // lower timers are used by conditions checked before
 
-  // Notes the reason; false, to be returned.
+  // Stores the reason; returns false, for the caller to return.
   bool refuse(Refusal refusal, Section section, std::size_t index);
 };
 
-// verify_records.cpp: every record of every section but code, each by itself and against those it
-// refers to. Assumes that the sections fill the image.
+// verify_records.cpp: every record of every section except code, each on its own and against the
+// records that it refers to. Assumes that the sections fill the image.
 bool check_records(Verification& verification);
 
-// The behaviour's rules that keep a truth in its frame. It has its rules.
+// How many of the behaviour's rules keep a truth in its frame. Its rules must be in the image.
 std::size_t count_watches(const Image& image, const Behavior& behavior);
 
 constexpr Refusal good_or(Refusal refusal, bool good) {

@@ -1,8 +1,8 @@
-// The verifier: the header and the checksum, then the records, then the code of all rules, and that
-// it does no more than the records declare.
+// The verifier: checks the header and the checksum, then the records, then the code of all rules, and
+// that the code does no more than the records declare.
 //
-// Work is linear in the image for everything but code; code is checked once for every rule that
-// uses it, and that is bounded (check_code).
+// The work is linear in the image, except for code: code is checked once for every rule that uses it,
+// and that is bounded (check_code).
 #include "vm/verifier.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint16_t kOpcodeSet = opcode_set_id();
 
-// kAllActuators is no group.
+// kAllActuators must not be the number of a group.
 constexpr unsigned kMaxGroups = kAllActuators - kGroupBit;
 
 bool are_too_many(const ImageHeader& header, const Limits& limits) {
@@ -25,11 +25,11 @@ bool are_too_many(const ImageHeader& header, const Limits& limits) {
          header.behaviors > kMaxBehaviors || header.verbs > kMaxVerbs || header.groups > kMaxGroups;
 }
 
-// What must hold before any section can be looked at.
+// Everything that must be true before any section can be read.
 Refusal check_header(std::span<const std::byte> bytes, const Limits& limits, Image& image) {
   if (bytes.size() < sizeof(ImageHeader)) return Refusal::too_short;
   const bool sections_fit = view_image(bytes, image);
-  if (image.header == nullptr) return Refusal::bad_length;  // not 4-aligned: the caller's mistake
+  if (image.header == nullptr) return Refusal::bad_length;  // not 4-aligned: the caller's error
   const ImageHeader& header = *image.header;
   if (header.magic != kMagic) return Refusal::bad_magic;
   if (header.format_major != kFormatMajor) return Refusal::wrong_version;
@@ -58,7 +58,7 @@ constexpr std::string_view kSectionNames[] = {
 #undef IMAGE_SECTION
 };
 
-// Finds the response's cost; 0 where there is none.
+// Checks a response and computes its cost; 0 if there is none.
 bool check_response(Frame& frame, const Rule& rule, std::uint16_t index, std::uint32_t& cost) {
   cost = 0;
   if (index == kNoIndex) return true;
@@ -72,9 +72,9 @@ bool check_response(Frame& frame, const Rule& rule, std::uint16_t index, std::ui
   return true;
 }
 
-// A response shared by several rules is checked for each: what its words mean depends on the frame
-// of the behaviour that runs it. That cannot be made to take long: the words looked at are at most
-// as many as the instructions that the board allows in one step (check_object).
+// A response shared by several rules is checked for each, because the meaning of its words depends on
+// the frame of the behaviour that runs it. An image cannot make that take long: at most as many words
+// are checked as the board allows instructions in one step (check_object).
 bool check_code(Verification& verification) {
   const Image& image = verification.image;
   for (std::size_t b = 0; b < image.behaviors.size(); ++b) {

@@ -1,9 +1,9 @@
 // Decides whether an image may run, in one pass without allocation. The board and rsc use the same
 // code.
 //
-// After verify() returned ok, no execution of the image can read or write outside its frame,
+// After verify() has returned ok, no execution of the image can read or write outside its frame,
 // constants, timer memory, code and strings, run longer in one step than its declared cost, or
-// command an actuator it did not declare.
+// command an actuator that it did not declare.
 #pragma once
 
 #include <cstddef>
@@ -25,12 +25,12 @@ enum class Refusal : std::uint8_t {
 [[nodiscard]] std::string_view describe(Refusal refusal);
 [[nodiscard]] std::string_view describe(Section section);
 
-// What the board offers; the format's own limits (image.hpp) always hold as well.
+// The board's limits; those of the format (image.hpp) always apply too.
 struct Limits {
   std::uint32_t image_bytes = 65536;
   std::uint32_t step_cost = 1000000;  // M4 instructions of VM code in one step
   std::uint16_t frame_cells = 4096;   // sum over the behaviours
-  std::uint16_t timer_words = 4096;   // of the time words' memory
+  std::uint16_t timer_words = 4096;   // words of timer memory
   std::uint16_t samples = 4096;       // sum over the windows of the checks
   std::uint16_t rules = 65535;
   std::uint8_t inputs = 64;  // channels and variables: one bit each in a mask
@@ -43,17 +43,17 @@ struct Limits {
 struct Verdict {
   Refusal refusal = Refusal::none;
   Section section = Section::header;
-  std::uint16_t index = 0;  // record in the section; for code: word (the "pc")
+  std::uint16_t index = 0;  // record in the section; in code, the word (the "pc")
   [[nodiscard]] bool ok() const { return refusal == Refusal::none; }
 };
 
 // `bytes` must be 4-aligned. On success `image` views them; otherwise it is empty.
 [[nodiscard]] Verdict verify(std::span<const std::byte> bytes, const Limits& limits, Image& image);
 
-// Worst-case M4 instructions of VM code in one step: every condition, and of every rule the costlier
-// response, of which the costliest part between two waits counts. Found by the same pass as verify();
-// what the header declares, and the board's limits, do not matter. 0 for an image that would be
-// refused for anything else. `image` must be a view that view_image() accepted.
+// Worst-case M4 instructions of VM code in one step: every condition, and the costlier response of
+// every rule, of which the costliest part between two waits counts. Computed by the same pass as
+// verify(), whatever the header declares and the board's limits are. 0 for an image that would be
+// refused for any other reason. `image` must be a view that view_image() accepted.
 [[nodiscard]] std::uint32_t step_cost(const Image& image);
 
 }  // namespace robosync::vm

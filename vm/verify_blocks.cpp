@@ -5,7 +5,7 @@
 namespace robosync::vm {
 namespace {
 
-// Nothing may cost more, so that sums of a few costs fit 32 bits.
+// No cost may exceed this, so that the sum of a few costs fits 32 bits.
 constexpr std::uint32_t kMaxCost = 1U << 29;
 
 // How far the word jumps, ahead or back.
@@ -15,7 +15,7 @@ std::size_t distance_of(Word word, Traits traits) {
 
 }  // namespace
 
-// A loop must have been closed before the block around it ends.
+// A loop must be closed before the block around it ends.
 Refusal Blocks::arrive(std::size_t at) {
   for (; ends_at(at); --depth_) {
     if (top().is_loop()) return Refusal::bad_jump;
@@ -84,14 +84,14 @@ Refusal Blocks::open(Flow closed_by, std::size_t start, std::size_t end) {
   return Refusal::none;
 }
 
-// Remembers in a forward block what has been spent at a jump to its end.
+// Stores in a forward block the cost and output at a jump to its end.
 void Blocks::take_worse(Block& block) const {
   block.cost = std::max(block.cost, spent_.cost);
   block.output = static_cast<std::uint8_t>(std::max<std::uint32_t>(block.output, spent_.output));
 }
 
-// ELSE: what follows is reached from where the block that ends here began. Where the block around
-// it ends at the target, too, that is the same end: so a chain of ELSEs is no deeper than one.
+// ELSE: the following code is reached from the begin of the block that ends here. If the enclosing
+// block also ends at the target, both share that end: so a chain of ELSEs is no deeper than one ELSE.
 Refusal Blocks::begin_else(std::size_t next, std::size_t target) {
   if (depth_ == 0 || top().is_loop() || top().end != next) return Refusal::bad_jump;
   const Spent before{top().cost, top().output};
@@ -112,20 +112,20 @@ Refusal Blocks::close_loop(std::size_t target, Word word, Flow end) {
   if (end == Flow::count_end && operand_a(opener(loop)) != operand_a(word))
     return Refusal::bad_jump;
   --depth_;
-  if (end == Flow::poll_end) return Refusal::none;  // a run ends at both ends of it
+  if (end == Flow::poll_end) return Refusal::none;  // a run ends both at its begin and at its end
   return repeat(loop);
 }
 
-// Takes into account that the loop, whose end is reached, runs more than once.
+// At the end of a loop: accounts for its further rounds.
 Refusal Blocks::repeat(const Block& loop) {
-  if (loop.pauses == Pauses::always) {  // a run can come from the last wait around to the first one
+  if (loop.pauses == Pauses::always) {  // a run can go from the last wait around to the first one
     worst_ = std::max(worst_, spent_.cost + loop.lead_cost);
     return good_or(Refusal::too_much_output,
                    spent_.output + loop.lead_output <= kMaxResponseOutput);
   }
   const Word begin = opener(loop);
   if (kTraits[begin & 0xFF].operand(1) != Operand::count16) return Refusal::endless;
-  // One round is in what was spent already.
+  // One round has been counted already.
   const auto more = static_cast<std::uint32_t>(image_.constants[operand_wide(begin)] / kScale - 1);
   const std::uint64_t cost = std::uint64_t{more} * (spent_.cost - loop.cost);
   const std::uint64_t output = std::uint64_t{more} * (spent_.output - loop.output);
@@ -134,7 +134,8 @@ Refusal Blocks::repeat(const Block& loop) {
   return spend(static_cast<std::uint32_t>(cost), static_cast<std::uint32_t>(output));
 }
 
-// The inputs are read anew in the next step.
+// At a wait: the next step reads the inputs anew, so the response owns none. False if a loop around it
+// must not wait.
 bool Blocks::disown() {
   for (unsigned i = 0; i < depth_; ++i) {
     if (open_[i].pauses == Pauses::never) return false;
@@ -153,7 +154,7 @@ bool Blocks::change(std::uint8_t input) {
   return true;
 }
 
-// The run ends here. Loops around it, up to the first IF, wait in every round.
+// A run ends here. The loops around it, out to the first IF, wait in every round.
 void Blocks::wait() {
   unsigned block = depth_;
   for (; block > 0 && open_[block - 1].is_loop(); --block) {
@@ -163,7 +164,7 @@ void Blocks::wait() {
     loop.lead_cost = spent_.cost - loop.cost;
     loop.lead_output = static_cast<std::uint8_t>(spent_.output - loop.output);
   }
-  for (; block > 0; --block)  // one further out: the wait may be left out in a round of it
+  for (; block > 0; --block)  // a round of a loop further out may skip the wait
     if (open_[block - 1].is_loop()) return;
   worst_ = std::max(worst_, spent_.cost);
   spent_ = {};

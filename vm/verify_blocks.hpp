@@ -1,15 +1,15 @@
-// Verifier, part: how the blocks of a code object nest, and what a run of it costs and puts out.
+// Verifier, part: how the blocks of a code object nest, and the cost and output of a run.
 //
-// One pass, without looking back: jumps go only to the ends of blocks and the starts of loops, so
-// what was spent on the costliest way to an instruction is known when the pass comes there. A wait
-// ends a run, and the count starts again. A loop either runs a constant number of times, and its
-// body counts as often; or it waits in every round, and a run sees at most what stands behind its
-// last wait and, around the loop's end, what stands before its first one. A wait that may be jumped
-// over inside a loop counts as if it were none.
+// One pass, without going back: jumps go only to the ends of blocks and the starts of loops, so the
+// cost of the costliest path to an instruction is known when the pass reaches it. A wait ends a run,
+// and the count starts again. A loop either runs a constant number of times, and its body counts that
+// many times; or it waits in every round, and a run covers at most the code after its last wait and,
+// around the loop's end, the code before its first one. A wait that can be skipped inside a loop does
+// not count as a wait.
 //
-// Which variables the response owns is known in the same way: `set` gives one to it, a block ends
-// with those that it began with, a wait takes all away. In a loop that changes one which it began
-// with, nothing may wait: the next round would not own it.
+// The variables that the response owns are tracked in the same way: `set` makes it own one, a block
+// ends with those that it began with, and a wait ends all ownership. If a loop changes a variable that
+// it began with, it must not wait: the next round would not own the variable.
 #pragma once
 
 #include <array>
@@ -28,21 +28,21 @@ public:
   [[nodiscard]] bool ends_at(std::size_t at) const {
     return depth_ > 0 && open_[depth_ - 1].end <= at;
   }
-  // Ends those that do.
+  // Ends the blocks that end before the word at `at`.
   [[nodiscard]] Refusal arrive(std::size_t at);
-  // The word at `at`, whose operands are good, is run.
+  // Counts the cost and the output of a word with valid operands.
   [[nodiscard]] Refusal spend(std::uint32_t cost, std::uint32_t output);
-  // Then, if it begins or ends a block, or waits.
+  // Call this after spend() for a word that begins or ends a block, or waits.
   [[nodiscard]] Refusal flow(std::size_t at, Word word, Traits traits);
 
   // The response owns this input from here on.
   void own(std::uint8_t input) { owned_ |= bit_of(input); }
-  // May this input be changed in place? It is, then.
+  // May this input be changed in place? If so, notes the change.
   [[nodiscard]] bool change(std::uint8_t input);
 
   // Is it the cell of an open loop?
   [[nodiscard]] bool is_counter(std::uint8_t cell) const;
-  // Cost of the costliest run.
+  // The cost of the costliest run.
   [[nodiscard]] std::uint32_t worst() const;
 
 private:
@@ -58,17 +58,17 @@ private:
   struct Block {
     [[nodiscard]] bool is_loop() const { return closed_by != Flow::if_else; }
 
-    std::uint32_t cost;  // IF: spent where a jump to its end starts, at most; loop: spent at its
-                         // start. The lead: from there to the first wait
+    std::uint32_t cost;  // IF: most spent at a jump to its end; loop: spent at its start. Its lead
+                         // goes from there to the first wait
     union {
       std::uint32_t lead_cost;  // of a loop that always pauses
-      std::uint32_t owned;      // of those it began with, the ones that no wait took away
+      std::uint32_t owned;      // at its begin, without those lost by a wait since
     };
-    std::uint16_t start;  // loop: where a jump back goes to
-    std::uint16_t end;    // IF: where it ends; loop: where it must have ended
+    std::uint16_t start;  // loop: target of its jump back
+    std::uint16_t end;    // IF: its end; loop: the latest place for its end
     std::uint8_t output, lead_output;
     Pauses pauses;
-    Flow closed_by;  // which word may end it: the loop's own, or ELSE
+    Flow closed_by;  // the kind of word that may end it: the loop's own, or ELSE
   };
   static_assert(sizeof(Block) == 16, "stands kMaxBlocks times on a small stack");
 
@@ -89,7 +89,7 @@ private:
 
   const Image& image_;
   std::size_t last_;
-  Spent spent_;  // since the last wait, on the costliest way
+  Spent spent_;  // since the last wait, on the costliest path
   std::uint32_t worst_ = 0;
   std::uint32_t owned_ = 0;  // bit i: input i
   unsigned depth_ = 0;

@@ -1,7 +1,7 @@
 // Verifier, part: the instructions of one code object.
 //
-// One loop over the words. What an opcode is comes from its columns in opcodes.def (Traits); nothing
-// here knows one by name. How blocks nest is verify_blocks.cpp's matter.
+// One loop over the words. The properties of an opcode come from its columns in opcodes.def (Traits);
+// no opcode is treated by name. verify_blocks.cpp checks how blocks nest.
 #include "vm/verify_object.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace robosync::vm {
 namespace {
 
-// A byte each: the other columns fill the word of Traits.
+// One byte each, because the other columns fill the word of Traits.
 constexpr std::array<std::uint8_t, kOpcodes.size()> kCosts = [] {
   std::array<std::uint8_t, kOpcodes.size()> costs{};
   for (std::size_t i = 0; i < costs.size(); ++i)
@@ -28,7 +28,7 @@ constexpr Context context_of(ObjectKind kind) {
   return kind == ObjectKind::safety ? Context::safety : Context::condition;
 }
 
-// A constructor, as an aggregate would be filled with zeros first, the places of blocks as well.
+// Has a constructor, because an aggregate would be zeroed first, including the array of blocks.
 struct Pass {
   Pass(Frame& frame, ObjectKind what, std::size_t last)
       : verification(frame.verification),
@@ -46,7 +46,7 @@ struct Pass {
   ObjectKind kind;
   Context context;
   Blocks blocks;
-  std::uint32_t params = 0;  // given to the command to come
+  std::uint32_t params = 0;  // given so far for the next command
   std::uint32_t actuators = 0;
 };
 
@@ -63,7 +63,7 @@ Refusal check_local(const Pass& pass, std::uint8_t cell) {
                  !pass.cells.is_taken(cell) && !pass.blocks.is_counter(cell));
 }
 
-// A register takes anything, a variable that the response owns only numbers.
+// A register accepts numbers and truths, a variable that the response owns only numbers.
 Refusal check_write(Pass& pass, std::uint8_t cell, bool truth) {
   if (pass.cells.is_local(cell)) return check_local(pass, cell);
   return good_or(Refusal::bad_operand,
@@ -71,7 +71,7 @@ Refusal check_write(Pass& pass, std::uint8_t cell, bool truth) {
                      (!truth && pass.cells.is_input(cell) && pass.blocks.change(cell)));
 }
 
-// A variable that is not the result of a CHECK, among the inputs that have a bit of their own.
+// A variable that is not the result of a CHECK, and is among the inputs that have a bit each.
 bool is_writable(const Pass& pass, std::uint8_t cell) {
   if (cell >= kMaxWritable || !pass.cells.is_input(cell)) return false;
   const std::size_t input = pass.image.inputs[pass.behavior.first_input + std::size_t{cell}];
@@ -79,7 +79,7 @@ bool is_writable(const Pass& pass, std::uint8_t cell) {
   return input >= channels && pass.image.variables[input - channels].kind != VariableKind::band;
 }
 
-// Timers are taken in rising order, so that none is taken twice.
+// Timers must be used in rising order, so that none is used twice.
 Refusal check_timer(const Pass& pass, Opcode opcode, std::size_t index) {
   if (index >= pass.image.timers.size()) return Refusal::bad_operand;
   if (index < pass.verification.next_timer) return Refusal::shared_timer;
@@ -94,8 +94,8 @@ bool is_constant_good(const Pass& pass, Operand kind, std::size_t index) {
   return kind != Operand::count16 || constant % kScale == 0;
 }
 
-// An operand that is only looked at. Distances are verify_blocks.cpp's matter; targets, verbs and
-// words are looked at together (command).
+// Checks an operand that is not written. verify_blocks.cpp checks distances; command() checks targets,
+// verbs and words together.
 Refusal check_operand(const Pass& pass, Operand kind, Opcode opcode, std::size_t number) {
   switch (kind) {
     case Operand::none:
@@ -119,7 +119,7 @@ Refusal check_operand(const Pass& pass, Operand kind, Opcode opcode, std::size_t
   }
 }
 
-// Is what is written as B is a truth value?
+// Does write_same write a truth value, as given by B?
 bool gives_truth(const Pass& pass, Operand kind_b, Word word) {
   if (kind_b == Operand::read) return pass.cells.is_truth(operand_b(word));
   const Value constant = pass.image.constants[operand_wide(word)];
@@ -159,7 +159,7 @@ Refusal halt(Pass& pass, std::uint8_t target) {
   return good_or(Refusal::bad_operand, targets != 0 || target == kAllActuators);
 }
 
-// What stands in A, once B and C are known to be good; then what the instruction does to it.
+// Checks A, after B and C have been checked, and applies the instruction's effect on it.
 Refusal perform(Pass& pass, Traits traits, Word word) {
   const std::uint8_t a = operand_a(word);
   const Operand kind = traits.operand(0);
@@ -177,7 +177,7 @@ Refusal perform(Pass& pass, Traits traits, Word word) {
       break;
     case Operand::local:
       if (!pass.cells.is_local(a)) return Refusal::bad_operand;
-      if (traits.flow() == Flow::count_end) return Refusal::none;  // its loop's: verify_blocks.cpp
+      if (traits.flow() == Flow::count_end) return Refusal::none;  // checked in verify_blocks.cpp
       break;
     case Operand::variable:
       pass.blocks.own(a);
@@ -207,22 +207,22 @@ Refusal check_operands(Pass& pass, Traits traits, Word word) {
   return refusal != Refusal::none ? refusal : perform(pass, traits, word);
 }
 
-// Neither registers nor parameters are carried over to where ways meet.
+// Neither registers nor parameters are kept where paths meet.
 Refusal end_blocks(Pass& pass, std::size_t at) {
   pass.cells.forget_registers();
   const Refusal refusal = pass.blocks.arrive(at);
   return refusal == Refusal::none && pass.params != 0 ? Refusal::unused_param : refusal;
 }
 
-// Blocks and waits: nor are they here, but for what was known before an IF inside of it.
+// Blocks and waits: neither are kept here, except that registers stay known inside an IF.
 Refusal flow(Pass& pass, Traits traits, std::size_t at, Word word) {
   if (pass.params != 0) return Refusal::unused_param;
   if (traits.flow() != Flow::if_begin) pass.cells.forget_registers();
   return pass.blocks.flow(at, word, traits);
 }
 
-// Is this the place for an instruction with `traits`? Objects end with the terminator of their
-// kind, and only there.
+// Is an instruction with `traits` allowed here? An object has the terminator of its kind as its last
+// word and nowhere else.
 Refusal check_place(const Pass& pass, Traits traits, bool last) {
   const bool ends = traits.flow() == Flow::end;
   if (!traits.stands_in(pass.context) || (ends && !last)) return Refusal::wrong_context;

@@ -1,4 +1,4 @@
-// Verifier, part: one code object, as a behaviour runs it. Assumes good records.
+// Verifier, part: one code object, as a behaviour runs it. Assumes that the records are valid.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace robosync::vm {
 
-// What the cells of a behaviour's frame hold before an instruction, on whichever way it is reached.
+// What is known about the cells of a behaviour's frame before an instruction, on every path to it.
 class Cells {
 public:
   explicit Cells(const Behavior& behavior, std::size_t watches)
@@ -17,7 +17,7 @@ public:
         first_register_(static_cast<unsigned>(locals_end_ + watches)),
         count_(behavior.cells) {}
 
-  // Another object begins: the locals up to the last one that was written are taken.
+  // Another object begins: all locals up to the last one written are taken.
   void begin_object() {
     taken_end_ = written_end_;
     forget_registers();
@@ -58,10 +58,10 @@ private:
   }
 
   unsigned inputs_, locals_end_, first_register_, count_;
-  unsigned written_end_ = 0;  // behind the last local written by the objects so far
-  unsigned taken_end_ = 0;    // the same, when this object began
-  Bits known_;   // of the registers; initialized by begin_object(), as far as there are cells
-  Bits truths_;  // initialized for what is known
+  unsigned written_end_ = 0;  // one past the last local that the objects so far write
+  unsigned taken_end_ = 0;    // written_end_ when this object began
+  Bits known_;   // registers that are set; begin_object() initializes the bits of existing cells
+  Bits truths_;  // valid for registers that are set
 };
 
 struct CodeRange {
@@ -71,8 +71,8 @@ struct CodeRange {
 
 enum class ObjectKind : std::uint8_t { condition, period, response, safety };
 
-// A behaviour and its frame, which its rules share. They are checked in their order, and of each the
-// responses before the condition: what an object may do depends on those before it.
+// A behaviour and its frame, which its rules share. Rules are checked in order, each with its responses
+// before its condition: what an object may do depends on the objects before it.
 struct Frame {
   Frame(Verification& all, const Behavior& of)
       : verification(all), behavior(of), cells(of, count_watches(all.image, of)) {}
@@ -80,11 +80,11 @@ struct Frame {
   Verification& verification;
   const Behavior& behavior;
   Cells cells;
-  std::uint32_t actuators = 0;  // every one that a rule so far commands or halts
+  std::uint32_t actuators = 0;  // every actuator that a rule so far commands or halts
 };
 
-// Finds, of an accepted object, what it costs between two waits at most, in M4 instructions; and
-// every actuator that it commands or halts.
+// For an accepted object, returns its highest cost between two waits, in M4 instructions, and every
+// actuator that it commands or halts.
 bool check_object(Frame& frame, ObjectKind kind, CodeRange range, std::uint32_t& cost,
                   std::uint32_t& actuators);
 

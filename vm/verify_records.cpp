@@ -1,7 +1,7 @@
 // Verifier, part: the records of the image.
 //
-// One walk over the sections in their order, one check for each kind of record. A check may rely on
-// the sections before its own.
+// One walk over the sections in their order, with one check for each kind of record. A check may rely
+// on the sections before its own.
 #include <cstddef>
 #include <type_traits>
 
@@ -12,7 +12,7 @@
 namespace robosync::vm {
 namespace {
 
-// What the checks know, and what they must remember of the records before.
+// The context of the checks, and their state from the records before.
 struct Walk {
   const Image& image;
   const Limits& limits;
@@ -20,13 +20,13 @@ struct Walk {
   std::uint32_t next_rule = 0;
   std::uint32_t cells = 0;  // of all frames
   std::int32_t last_priority = kSafetyPriority + 1;
-  std::uint32_t safety_rules = 0;  // the first ones
+  std::uint32_t safety_rules = 0;  // number of SAFETY rules, which come first
   std::uint32_t samples = 0;       // of all windows
   std::uint32_t timer_words = 0;
   std::uint32_t next_track = 0;
   std::uint32_t next_key = 0;
   std::uint32_t last_word = 0;  // of the source lines
-  bool reads_pins = false;      // there is a sensor on a pin, or two
+  bool reads_pins = false;      // there is a sensor that uses pins
   std::uint32_t servo_chips = 0;
   std::uint32_t displays = 0;
 };
@@ -57,7 +57,7 @@ bool is_dimension(Dimension dimension) {
   return static_cast<std::size_t>(dimension) < kDimensions.size();
 }
 
-// Are there `count` records from `first` on, of the `all` that there are?
+// Are the `count` records from `first` on within `all` records?
 bool is_inside(std::size_t first, std::size_t count, std::size_t all) {
   return first + count <= all;
 }
@@ -66,7 +66,7 @@ bool is_range(Value min, Value max) {
   return min != kUnknown && min <= max;
 }
 
-// Variable::fade: part of the distance that is left, times this; so much is left that it stays.
+// Variable::fade is the fraction of the distance that is left, times this; at this value nothing fades.
 constexpr std::uint32_t kNoFade = std::uint32_t{1} << 31;
 
 template <typename Enum>
@@ -74,7 +74,7 @@ constexpr bool is_enumerator(Enum value) {
   return value < Enum::count_;
 }
 
-// Is there code from `start` on, `length` words?
+// Are the `length` words from `start` on within the code?
 bool is_code(const Walk& walk, std::uint32_t start, std::uint32_t length) {
   return length > 0 && is_inside(start, length, walk.image.code.size());
 }
@@ -86,14 +86,14 @@ Refusal check_driver(const Walk& walk, DriverId driver, DriverKind kind) {
   return good_or(Refusal::no_driver, (walk.limits.drivers >> number & 1) != 0);
 }
 
-// It reads what was measured before it, so algorithms cannot wait for each other. What its module
-// takes, the firmware knows (runtime-m4/algorithms/judge.hpp).
+// An algorithm reads an earlier sensor, so algorithms cannot wait for each other. The firmware checks
+// the parameters of its module (runtime-m4/algorithms/judge.hpp).
 Refusal check_algorithm(const Sensor& sensor) {
   if (sensor.first_input >= sensor.first_channel) return Refusal::bad_index;
   return good_or(Refusal::bad_value, sensor.period_ms > 0);
 }
 
-// Is it a pin of one of the first `count` sensors?
+// Is `pin` used by one of the first `count` sensors?
 bool is_of_sensor(const Image& image, std::uint32_t pin, std::size_t count) {
   for (const Sensor& sensor : image.sensors.first(count)) {
     const bool echo = is_by_echo(sensor.driver);
@@ -105,7 +105,7 @@ bool is_of_sensor(const Image& image, std::uint32_t pin, std::size_t count) {
   return false;
 }
 
-// Its two pins are its own.
+// An echo sensor shares neither of its two pins.
 Refusal check_echo(Walk& walk, const Sensor& sensor, std::size_t index) {
   walk.reads_pins = true;
   const bool shared = sensor.bus == sensor.address || is_of_sensor(walk.image, sensor.bus, index) ||
@@ -114,7 +114,7 @@ Refusal check_echo(Walk& walk, const Sensor& sensor, std::size_t index) {
   return good_or(Refusal::bad_value, sensor.period_ms >= kMinEchoPeriodMs);
 }
 
-// Nor does anybody else have its pin, which may be one that the board can drive.
+// An analog sensor does not share its pin, which may be one that the board can drive.
 Refusal check_analog(Walk& walk, const Sensor& sensor, std::size_t index) {
   walk.reads_pins = true;
   if (is_of_sensor(walk.image, sensor.address, index)) return Refusal::shared_pin;
@@ -125,14 +125,14 @@ bool answers_at(const Sensor& sensor, const Sensor& chip) {
   return is_on_i2c(sensor.driver) && sensor.bus == chip.bus && sensor.address == chip.address;
 }
 
-// Its place on the bus is its own.
+// No other sensor has its address on its bus.
 bool is_alone(const Image& image, const Sensor& chip, std::size_t index) {
   for (std::size_t s = 0; s < image.sensors.size(); ++s)
     if (s != index && answers_at(image.sensors[s], chip)) return false;
   return true;
 }
 
-// … and its enable pin.
+// A servo chip shares neither its address nor its enable pin.
 Refusal check_servo_chip(Walk& walk, const Sensor& chip, std::size_t index) {
   walk.reads_pins = true;
   if (++walk.servo_chips > kMaxServoChips) return Refusal::too_many;
@@ -176,8 +176,8 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
                                          sensor.period_ms >= min_period_ms(sensor.driver));
 }
 
-// Each channel names its sensor, and stands in that sensor's range. As the ranges follow each other
-// without gaps, a channel after the last range has no sensor to name.
+// Each channel names its sensor, and is in that sensor's range. The ranges follow each other without
+// gaps, so a channel after the last range has no sensor to name.
 Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
   if (channel.sensor >= walk.image.sensors.size()) return Refusal::bad_index;
   const Sensor& sensor = walk.image.sensors[channel.sensor];
@@ -189,7 +189,7 @@ Refusal check_channel(Walk& walk, const Channel& channel, std::size_t index) {
                                          is_range(channel.min, channel.max) && channel.change >= 0);
 }
 
-// What an actuator has for itself alone: its pins, the lights, the speaker, a display, a serial line, or the panel.
+// Outputs that an actuator does not share: its pins, the lights, the speaker, a display, a serial line, or the panel.
 constexpr std::uint32_t kNothing = UINT32_MAX;
 constexpr std::uint32_t kLights = UINT16_MAX + 1;
 constexpr std::uint32_t kSpeaker = kLights + 1;
@@ -228,7 +228,7 @@ bool owns(const Actuator& actuator, std::uint32_t output) {
   return output_of(actuator) == output || second_output_of(actuator) == output;
 }
 
-// Is it an actuator's before this one, or a sensor's?
+// Does an actuator before this one, or a sensor, use the output?
 bool is_taken(const Walk& walk, std::uint32_t output, std::size_t index) {
   if (walk.reads_pins && is_of_sensor(walk.image, output, walk.image.sensors.size())) return true;
   for (std::size_t a = 0; a < index; ++a)
@@ -236,7 +236,7 @@ bool is_taken(const Walk& walk, std::uint32_t output, std::size_t index) {
   return false;
 }
 
-// One output has one owner, nobody reads its pin, and whoever has a motor lets it stand still in its safe state.
+// An output has one owner, and no sensor reads its pin. An output that runs until it is ended must not hold in its safe state.
 Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t index) {
   const std::uint32_t output = output_of(actuator);
   const std::uint32_t second = second_output_of(actuator);
@@ -247,8 +247,8 @@ Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t ind
   return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 
-// A channel of a chip has one owner. What takes its pulses away in a halt is the chip's enable pin, which it has once: so all of
-// a chip go limp together, or hold together, and none can be brought to rest.
+// A channel of a chip has one owner. In a halt, the chip's single enable pin turns all its pulses off. So the servos of a chip go
+// limp together, or all hold, and none can be brought to rest.
 Refusal check_channel_of_chip(const Walk& walk, const Actuator& servo, std::size_t index) {
   const Image& image = walk.image;
   if (servo.bus >= image.sensors.size() || !is_servo_chip(image.sensors[servo.bus].driver) ||
@@ -311,7 +311,7 @@ Refusal check_variable(Walk& walk, const Variable& variable, std::size_t) {
                      (variable.fade == 0 || fades));
 }
 
-// A check's bands are the labels of its variable. It reads no band, so that their order is none.
+// A check's bands are the labels of its variable. It reads no band, so the order of checks has no effect.
 Refusal check_check(Walk& walk, const Check& check, std::size_t) {
   const Image& image = walk.image;
   const std::size_t channels = image.channels.size();
@@ -336,7 +336,7 @@ Refusal check_band(Walk&, const Band& band, std::size_t) {
   return good_or(Refusal::bad_value, band.low <= band.high && (holds_nothing || holds_itself));
 }
 
-// What SAFETY knows of a sensor that has fallen silent is nothing, after a while.
+// Does the input become unknown to SAFETY some time after its sensor falls silent?
 bool grows_stale(const Image& image, std::uint8_t input) {
   if (input >= image.channels.size()) return true;  // a variable
   const Channel& channel = image.channels[input];
@@ -353,7 +353,7 @@ bool all_grow_stale(const Image& image, const Behavior& safety) {
   return true;
 }
 
-// Behaviours stand by strictly falling priority, and their rules follow each other without gaps.
+// Behaviours are in order of strictly falling priority, and their rules follow each other without gaps.
 Refusal check_behavior(Walk& walk, const Behavior& behavior, std::size_t index) {
   if (behavior.name != kNoIndex && !is_string(walk, behavior.name)) return Refusal::bad_string;
   if (index > 0 && behavior.priority == walk.last_priority) return Refusal::same_priority;
@@ -394,7 +394,7 @@ Refusal check_timer(Walk& walk, const Timer& timer, std::size_t) {
   return good_or(Refusal::too_many, walk.timer_words <= walk.limits.timer_words);
 }
 
-// What a rule of each kind has; it has none of the rest.
+// The parts of a rule, by its kind; it must have no others.
 enum Part : std::uint8_t { kCondition = 1, kThen = 2, kElse = 4, kModified = 8, kSafety = 16 };
 
 constexpr std::uint8_t parts_of(RuleKind kind) {
@@ -423,7 +423,7 @@ bool has_response(const Walk& walk, std::uint16_t index, bool wanted) {
   return wanted ? index < walk.image.responses.size() : index == kNoIndex;
 }
 
-// SAFETY rules are the first ones, those of the behaviour that holds nothing else.
+// SAFETY rules come first, in a behaviour that contains nothing else.
 Refusal check_rule(Walk& walk, const Rule& rule, std::size_t index) {
   if (index >= walk.next_rule) return Refusal::bad_index;  // no behaviour has it
   const std::uint8_t parts = parts_of(rule.kind);
@@ -453,7 +453,7 @@ Refusal check_label(Walk& walk, const std::uint16_t& label, std::size_t) {
   return good_or(Refusal::bad_string, is_string(walk, label));
 }
 
-// The interpreter's comparisons with a constant rely on it being known.
+// The interpreter's comparisons with a constant rely on the constant being known.
 Refusal check_constant(Walk&, const Value& constant, std::size_t) {
   return good_or(Refusal::bad_value, constant != kUnknown);
 }
@@ -473,8 +473,8 @@ Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
                                          (reserved[0] | reserved[1] | reserved[2]) == 0);
 }
 
-// The tracks of the motions follow each other without gaps, and so do the keys of the tracks. One that
-// nobody has is refused.
+// The tracks of the motions follow each other without gaps, and so do the keys of the tracks. Tracks
+// and keys that belong to none are refused.
 Refusal check_motion(Walk& walk, const Motion& motion, std::size_t) {
   if (motion.first_track != walk.next_track) return Refusal::bad_index;
   walk.next_track += motion.track_count;
@@ -502,23 +502,23 @@ Refusal check_key(Walk& walk, const Key& key, std::size_t index) {
 
 using RecordCheck = Refusal (*)(Walk&, const std::byte* record, std::size_t index);
 
-// A section as the walk sees it: how many records the header says, how large they are, their check.
+// A section for the walk: the number of records in the header, their size, and their check.
 struct SectionInfo {
-  RecordCheck check;  // none: nothing to check
+  RecordCheck check;  // null: nothing to check
   std::uint8_t record_size;
-  std::uint8_t count_place;  // in the header
+  std::uint8_t count_place;  // offset in the header
   std::uint8_t count_size;
   bool named;  // the records begin with their name
 };
 
-// A behaviour's name stands elsewhere, and it may have none: check_behavior.
+// A behaviour's name is at another offset, and may be absent: check_behavior.
 template <typename Record>
 constexpr bool is_named() {
   if constexpr (requires { &Record::name; }) return offsetof(Record, name) == 0;
   return false;
 }
 
-// Another part of the verifier looks at it: code (verify_object.cpp), strings (check_records).
+// For sections that another part of the verifier checks: code (verify_object.cpp), strings (check_records).
 constexpr std::nullptr_t unchecked = nullptr;
 
 template <typename Record, auto check>

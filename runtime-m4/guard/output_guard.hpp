@@ -184,7 +184,7 @@ private:
   void own_lights(unsigned actuator, vm::Release safe);
   void own_chips(const vm::Image& image);
   void own_displays(const vm::Image& image);
-  // Null: the sensor is none.
+  // Null if the sensor is no servo chip.
   template <class Guard>
   [[nodiscard]] static auto* chip_of(Guard& guard, unsigned sensor);
   void switch_chip_off(Chip& chip);

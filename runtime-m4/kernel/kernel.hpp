@@ -108,8 +108,8 @@ public:
   // unprivileged thread makes the system call `report`.  [init, thread]
   void watch(Thread& watcher, Events stops, Events reports);
 
-  // Lets unprivileged threads read and write `areas`, besides their own stacks. The host does not
-  // restrict access.  [init, thread]
+  // From now on, unprivileged threads may also access `areas`, besides their own stacks. The host does
+  // not restrict access.  [init, thread]
   void grant(const port::Areas& areas);
 
   // While it is held, no other thread runs and the tick does not advance; interrupts are still taken.

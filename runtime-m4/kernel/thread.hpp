@@ -17,7 +17,7 @@ using Events = std::uint32_t;
 struct ThreadSpec {
   const char* name = "";  // for reports; must outlive the thread
   Category category = Category::system;
-  std::int16_t priority = 0;  // -128 … 127: max over the behaviours that need it (Priority(T))
+  std::int16_t priority = 0;  // -128 … 127: highest of the behaviours that need it (Priority(T))
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
   std::span<std::byte> stack;  // alignas(port::kStackAlignment), at least port::kMinStack

@@ -1,7 +1,7 @@
-# The runtime is optimized as a whole when the firmware is linked, which saves a tenth of the flash. Not
-# so what is in a hurry and measured by instructions (kernel), what assembler and the compiler itself
-# refer to (port), and where bench/ sees a reading arrive and a command leave (mailbox, servo): these
-# are compiled as they stand.
+# Link-time optimization of the whole runtime saves a tenth of the firmware's flash. It is off for files
+# that are time-critical and measured in instructions (kernel), for code that assembler and the compiler
+# itself refer to (port), and where bench/ detects that a reading arrives and a command leaves (mailbox,
+# servo).
 target_compile_options(robosync_runtime PRIVATE -flto -ffat-lto-objects)
 file(GLOB as_it_stands CONFIGURE_DEPENDS
   ${CMAKE_CURRENT_SOURCE_DIR}/kernel/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/port/cortex-m4/*.cpp)

@@ -8,6 +8,6 @@ if("ROBOSYNC_CLOCK_IS_SYSTICK" IN_LIST board_clock)
 endif()
 set_source_files_properties(port/cortex-m4/machine.cpp port/cortex-m4/tick.cpp port/cortex-m4/strikes_systick.cpp
                             PROPERTIES COMPILE_OPTIONS "-O2")
-# What is written there must not be turned into calls of itself.
+# The compiler must not turn these functions into calls of themselves.
 set_source_files_properties(port/cortex-m4/memory.cpp PROPERTIES COMPILE_OPTIONS
   "-ffreestanding;-fno-builtin;-fno-tree-loop-distribute-patterns;-fno-strict-aliasing")

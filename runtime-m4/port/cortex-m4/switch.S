@@ -15,10 +15,9 @@
    Bit 4 of EXC_RETURN is 0 if the thread used the FPU. If the core has deferred stacking s0–s15,
    storing s16 makes it stack them first.
 
-   The next thread is chosen as in Kernel::select_next(), but in registers. All that the choice reads is together
-   (kernel::Selection) and loaded by one instruction before the choice. So if an interrupt makes a thread ready after
-   that load, it compares the thread's rank with one that is not above the rank chosen here, and requests another
-   switch if the thread's rank is above it.
+   The next thread is chosen as in Kernel::select_next(), but in registers. One instruction loads everything that the
+   choice depends on (kernel::Selection). If an interrupt makes a thread ready after that load, it compares the thread's
+   rank with one that is not above the rank chosen here, and requests another switch if the thread's rank is above it.
 
    A thread's run time is the value of the free-running clock, which counts down, when the thread
    started, minus the value when it ends. This takes three instructions of each switch, because the running thread's

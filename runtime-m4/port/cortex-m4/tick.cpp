@@ -4,8 +4,8 @@
 // While all threads are blocked there are no ticks: the idle thread (switch.S) stops SysTick, sets an
 // alarm for the tick at which the timers have work, and sleeps. Whatever wakes it, the ticks that have
 // passed are counted before any interrupt is taken, so no handler and no thread ever reads an old
-// time. Then, before any thread can run, the idle thread restarts SysTick in phase with the ticks, and
-// pends its handler, which wakes the threads that are due.
+// time. Then, before any thread can run, the idle thread restarts SysTick in phase with the ticks. Its
+// handler is pending, and wakes the threads that are due.
 //
 // SysTick never fires before the clock says that the tick is over: it is set kLate counts late.
 #include "runtime-m4/port/cortex-m4/tick.hpp"
@@ -55,7 +55,7 @@ extern "C" {
 [[gnu::cold]] void robosync_end_sleep();
 void SysTick_Handler();
 
-// switch.S calls this before the idle thread sleeps, under a SwitchLock,
+// switch.S calls this before the idle thread sleeps, under a SwitchLock.
 void robosync_set_alarm() {
   using namespace robosync::port;
   const std::uint32_t longest = strikes::kLongestSleep / hooks::kTickCounts;
@@ -66,14 +66,14 @@ void robosync_set_alarm() {
   strikes::sleep_for(counts - passed + kLate);
 }
 
-// this after the sleep, before interrupts are taken (it pends the tick),
+// switch.S calls this after the sleep, before interrupts are taken. It also pends the tick.
 void robosync_count_sleep() {
   using namespace robosync::port;
   robosync_kernel.pass(count());
   core::reg(core::kIcsr) = core::kIcsrSysTickSet;
 }
 
-// and then this, under a SwitchLock. strikes::wake() runs while SysTick loads.
+// switch.S calls this last, under a SwitchLock. strikes::wake() runs while SysTick loads.
 void robosync_end_sleep() {
   using namespace robosync::port;
   begin_to_strike();

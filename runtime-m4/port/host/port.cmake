@@ -1,2 +1,2 @@
-# The processor is part of the runtime, which needs one to link.
+# The port is part of the runtime, which does not link without one.
 target_sources(robosync_runtime PRIVATE port/host/machine.cpp)
