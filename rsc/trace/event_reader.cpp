@@ -220,7 +220,7 @@ std::string EventReader::thread_name() const {
 std::string EventReader::thread_words() const {
   constexpr std::array<std::string_view, policy::kCategories> kWhose = {
       "", "sensor ", "algorithm ", "", "behaviour ", "actuator ", ""};
-  const std::string name = thread_name();
+  std::string name = thread_name();
   if (event_.subject >= names_.threads.size()) return name;
   const std::size_t category = names_.threads[event_.subject].category;
   const std::string_view whose = category < kWhose.size() ? kWhose[category] : "";
