@@ -201,6 +201,7 @@ void Triggers::lost(unsigned rule, bool to_itself, std::uint32_t now) {
   State& state = phases_[rule];
   state.told = true;
   if (chooses(rule)) {
+    if (has_triggered(rule) && !to_itself) state.last = 0;
     active_.insert(rule);
     return note_active(rule);
   }

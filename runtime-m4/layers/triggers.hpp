@@ -3,7 +3,8 @@
 // A rule remembers the last known truth of its condition. WHEN triggers when that becomes true,
 // WHEN/ELSE when it changes; the first known truth counts as a change; a truth that is an event
 // (BECOMES, CHANGES …) triggers each time. A WHEN/ELSE keeps wanting its chosen side until that side
-// is the one that ran last, also after it lost and while that side cools down. An unknown condition does nothing and is not
+// is the one that ran last, also while that side cools down. A side that triggered and lost counts as not run, although it may
+// have run before: something else has had its actuators since. An unknown condition does nothing and is not
 // remembered, so a sensor that drops out and comes back does not trigger by that alone. WHILE differs: unknown
 // ends it, so it fires again when its condition is known to be true.
 //
@@ -126,9 +127,10 @@ private:
   // What only the step thread knows of a rule. In a mask of sides, bit s is side s.
   struct State {
     std::uint8_t cooling : 2 = 0;  // sides that are cooling down
-    std::uint8_t last : 2 = 0;     // the side that ran last; none at first
-    bool waiting : 1 = false;      // WAITING, for its one side
-    bool told : 1 = false;         // the trace knows that it wants to run and does not
+    std::uint8_t last : 2 =
+        0;  // the side that ran last; none at first, and when a trigger has lost since
+    bool waiting : 1 = false;  // WAITING, for its one side
+    bool told : 1 = false;     // the trace knows that it wants to run and does not
     // From the image, kept here for speed.
     bool is_while : 1 = false;
     bool chooses : 1 = false;  // a WHEN/ELSE

@@ -110,6 +110,7 @@ void Interpreter::serve(const Claim& claim) {
     if (!claim.trigger) return;
     trace_.rule("lose", *rule.rule, rule.behavior, claim.side, obstacle);
     const bool chooses = rule.rule->kind == vm::RuleKind::when_else;  // it goes on wanting anyway
+    if (chooses) rule.ran_side.reset();
     if (rule.rule->waiting > 0 && !chooses)
       rule.waiting = Waiting{claim.side, now_.at + rule.rule->waiting};
     return;
@@ -215,8 +216,8 @@ void Interpreter::trip(Guard& guard, const Snapshot& readings) {
   Response response(guard.rule->then_response, rules_.size());
   const Surroundings here{evaluator_, no_chance_, program_.variables, readings, now_.at, false};
   const Output output = response.run(here);
-  for (const Deed& deed : output.deeds)
-    if (const auto* said = std::get_if<Said>(&deed)) say(*said);
+  for (const Effect& effect : output.effects)
+    if (const auto* said = std::get_if<Said>(&effect)) say(*said);
   inputs_.stage({output.changes});
 }
 

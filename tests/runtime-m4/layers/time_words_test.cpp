@@ -116,11 +116,24 @@ TEST_CASE("a side that is denied starts when its actuators are free, if it is st
   robot.feed(1000, "Y", 0);
   robot.feed(1100, "Y", 60);
   robot.feed(1200, "X", 0);
-  robot.feed(1300, "X", 20);  // chosen again, and it is the one that ran last
+  robot.feed(1300, "X", 20);  // DO ran last, but the other rule has had its actuator since
   robot.run(3000);
   CHECK(robot.only("win lose") ==
         "0 #1 win r1 ELSE\n200 #2 win r0 DO\n300 #3 lose r1 DO to b0\n700 #4 win r1 DO\n"
-        "1100 #6 win r0 DO\n1200 #7 lose r1 ELSE to b0\n1300 #8 lose r1 DO to b0\n");
+        "1100 #6 win r0 DO\n1200 #7 lose r1 ELSE to b0\n1300 #8 lose r1 DO to b0\n"
+        "1600 #9 win r1 DO\n");
+}
+
+TEST_CASE("a side that was interrupted is not taken up again, unless it is chosen again") {
+  Robot robot(robosync::test::high_and_low(
+      robosync::test::when_far("MOVE a FOR 500ms"),
+      robosync::test::rule("WHEN near X > 10", "MOVE a FOR 300ms\nELSE\nMOVE a FOR 50ms")));
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.feed(1000, "Y", 0);
+  robot.run(1500);
+  CHECK(robot.only("win lose interrupt") ==
+        "0 #1 win r1 DO\n100 #2 interrupt r1 by b0\n100 #2 win r0 DO\n");
 }
 
 TEST_CASE("a WHILE with COOLDOWN starts again when that is over") {
