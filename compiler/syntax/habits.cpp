@@ -16,10 +16,6 @@ bool is_operator(TokenKind kind) {
   return is_one_of(kind, {Kinds::PLUS, Kinds::MINUS, Kinds::STAR, Kinds::SLASH, Kinds::MOD});
 }
 
-bool is_preposition(TokenKind kind) {
-  return is_one_of(kind, {Kinds::TO, Kinds::BY, Kinds::OVER, Kinds::AT, Kinds::FOR, Kinds::MARGIN});
-}
-
 class Habits : private MistakenLine {
 public:
   using MistakenLine::MistakenLine;

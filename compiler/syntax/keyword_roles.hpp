@@ -23,6 +23,7 @@ enum Role : unsigned {
   name = 128,
   word = 256,
   context = 512,
+  given = 1024,
 };
 }  // namespace role
 

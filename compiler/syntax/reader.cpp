@@ -15,15 +15,11 @@ namespace {
 void leave_out_names(std::vector<TokenKind>& expected) {
   if (contains(expected, Kinds::PLUS)) std::erase(expected, Kinds::OPEN);
   if (!contains(expected, Kinds::NAME)) return;
-  unsigned role = 0;
-  if (contains(expected, Kinds::FOREVER)) role = role::word;
-  if (contains(expected, Kinds::FEELING)) role = role::name;
-  const bool given = role == role::word && contains(expected, Kinds::ONE);
-  std::erase_if(expected, [&](TokenKind kind) {
-    return (roles_of(kind) & role) != 0 ||
-           (given && is_one_of(kind, {Kinds::ONE, Kinds::START, Kinds::BELOW, Kinds::ABOVE,
-                                      Kinds::OTHERWISE}));
-  });
+  unsigned roles = 0;
+  if (contains(expected, Kinds::FOREVER)) roles |= role::word;
+  if (contains(expected, Kinds::ONE)) roles |= role::given;
+  if (contains(expected, Kinds::FEELING)) roles |= role::name;
+  std::erase_if(expected, [roles](TokenKind kind) { return (roles_of(kind) & roles) != 0; });
 }
 
 }  // namespace

@@ -402,10 +402,8 @@ private:
     const TokenKind wanted = edit_.inserted.front().kind;
     const TokenKind kind = tokens_[edit_.at].kind;
     if (wanted == Kinds::NAME && kind >= Kinds::USE) {
-      const bool value =
-          edit_.at > 0 && (roles_of(kind) & role::name) != 0 &&
-          is_one_of(tokens_[edit_.at - 1].kind,
-                    {Kinds::TO, Kinds::BY, Kinds::OVER, Kinds::AT, Kinds::FOR, Kinds::MARGIN});
+      const bool value = edit_.at > 0 && (roles_of(kind) & role::name) != 0 &&
+                         is_preposition(tokens_[edit_.at - 1].kind);
       diagnostics_
           .report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name" +
                                    (value ? " here" : ""))
