@@ -33,13 +33,12 @@ Json program(std::uint32_t bytes, const link::ProgramHash& hash) {
   return {{"hash", text_of(hash)}, {"bytes", bytes}};
 }
 
-// To which `rsc rollback` goes.
-struct Other {
-  std::uint32_t bytes;  // 0: none
-  const link::ProgramHash& hash;
+struct RollbackTarget {
+  std::uint32_t bytes = 0;  // 0: there is none
+  link::ProgramHash hash{};
 };
 
-Other other_of(const link::Kept& kept) {
+RollbackTarget rollback_target(const link::Kept& kept) {
   if (kept.state == Keeping::kept) return {kept.previous_bytes, kept.previous_hash};
   return {kept.kept_bytes, kept.kept_hash};
 }
@@ -47,8 +46,8 @@ Other other_of(const link::Kept& kept) {
 std::string why_none(const link::Kept& kept) {
   if (kept.state == Keeping::kept && kept.given_up_hash != link::ProgramHash{})
     return fmt::format(
-        "the board has gone back by itself from program {}, which did not stand its trial, and "
-        "keeps none besides the one that runs",
+        "the board has gone back automatically from program {}, whose trial failed, and keeps no "
+        "other program than the one that runs",
         text_of(kept.given_up_hash));
   return "the board has kept no program before this one";
 }
@@ -98,10 +97,9 @@ std::string keeping_text(const link::Kept& kept) {
 }
 
 std::string rollback_text(const link::Kept& kept) {
-  const Other other = other_of(kept);
-  return other.bytes == 0
-             ? "to none: " + why_none(kept)
-             : fmt::format("to program {} ({} bytes)", text_of(other.hash), other.bytes);
+  const auto [bytes, hash] = rollback_target(kept);
+  return bytes == 0 ? "to none: " + why_none(kept)
+                    : fmt::format("to program {} ({} bytes)", text_of(hash), bytes);
 }
 
 // The board says `kept` of what runs, which is the kept program then.
@@ -132,7 +130,8 @@ Json keeping_json(const link::Kept& kept) {
               {"goes_back", kept.goes_back != 0}};
   const bool none = kept.given_up_hash == link::ProgramHash{};
   object["given_up"] = none ? Json(nullptr) : Json(text_of(kept.given_up_hash));
-  object["rollback"] = program(other_of(kept).bytes, other_of(kept).hash);
+  const auto [bytes, hash] = rollback_target(kept);
+  object["rollback"] = program(bytes, hash);
   return object;
 }
 
@@ -155,7 +154,7 @@ link::HelloReply roll_back(Client& client) {
   const link::Kept before = when_read(client);
   if (before.state == Keeping::no_store)
     throw Failure(Exit::program, "this board keeps no programs: there is none to go back to");
-  const auto [bytes, hash] = other_of(before);
+  const auto [bytes, hash] = rollback_target(before);
   if (bytes == 0) throw Failure(Exit::program, why_none(before) + ": upload the one you want");
   client.roll_back(hash);
   when_read(client);

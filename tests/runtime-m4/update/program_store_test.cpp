@@ -255,7 +255,7 @@ TEST_CASE(
     CHECK_THAT(tool::rollback_text(kept),
                Catch::StartsWith("to none: ") && Catch::Contains(tool::text_of(name_of(bad))));
     CHECK(tool::keeping_json(kept).at("rollback").is_null());
-    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("gone back by itself") &&
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("gone back automatically") &&
                                                    Catch::Contains("upload the one you want"));
     client.roll_back(name_of(first));
     client.roll_back(name_of(bad));
