@@ -216,16 +216,25 @@ std::string EventReader::thread_name() const {
                                                 : fmt::format("thread {}", event_.subject);
 }
 
-// Rules outside a BEHAVIOR have no name of their own.
 std::string EventReader::thread_words() const {
-  constexpr std::array<std::string_view, policy::kCategories> kWhose = {
-      "", "sensor ", "algorithm ", "", "behaviour ", "actuator ", ""};
   std::string name = thread_name();
   if (event_.subject >= names_.threads.size()) return name;
-  const std::size_t category = names_.threads[event_.subject].category;
-  const std::string_view whose = category < kWhose.size() ? kWhose[category] : "";
-  return whose == "behaviour " && name == "rule" ? "a rule outside a BEHAVIOR"
-                                                 : std::string(whose) + name;
+  switch (static_cast<policy::Category>(names_.threads[event_.subject].category)) {
+    case policy::Category::sensor:
+      return "sensor " + name;
+    case policy::Category::algorithm:
+      return "algorithm " + name;
+    case policy::Category::control:
+      return "actuator " + name;
+    case policy::Category::behavior:  // rules outside a BEHAVIOR have no name of their own
+      return name == "rule" ? "a rule outside a BEHAVIOR" : "behaviour " + name;
+    default:
+      return name;
+  }
+}
+
+bool names_thread(const link::Event& event) {
+  return shape_of(event.kind).subject == About::thread;
 }
 
 std::string EventReader::text() const {

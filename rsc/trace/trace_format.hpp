@@ -20,9 +20,7 @@ struct TraceNames {
 };
 
 // Does the event name a thread by its rank?
-[[nodiscard]] inline bool names_thread(const link::Event& event) {
-  return event.kind == link::EventKind::fault || event.kind == link::EventKind::deadline;
-}
+[[nodiscard]] bool names_thread(const link::Event& event);
 
 // One JSON object without newline: t_us, step, event, names, values, source line.
 [[nodiscard]] std::string trace_json(const link::Event& event, const TraceNames& names);

@@ -115,6 +115,7 @@ namespace {
 const tool::Program& remembering() {
   static const tool::Program compiled = test::compile(R"(STATE mood: calm, very scared
 FEELING joy FROM 0% TO 100% START 50%
+TIMER idle
 SAFETY guard
   WHEN touch LEVEL > 9
   DO ALERT "too hard"
@@ -122,6 +123,7 @@ SAFETY guard
 END
 WHEN touch LEVEL > 3 DO
   SET mood TO very scared
+  RESTART idle
   RAISE joy BY 5%
   LOG "touched with", touch LEVEL, "by hand"
 END
@@ -177,6 +179,12 @@ TEST_CASE("what is remembered is shown as its label, or with its unit") {
         "mood becomes unknown");
 }
 
+TEST_CASE("a TIMER that is restarted is at 0, whenever that was") {
+  const Event restart = event(EventKind::set, variable("idle"), 0, {7000});
+  CHECK(remembered(restart) == "idle is restarted");
+  CHECK(remembered_json(restart).at("value") == 0);
+}
+
 TEST_CASE("LOG and ALERT: the text, with the values in its places") {
   const Event log = event(EventKind::log, text_of(vm::Opcode::log), 0, {2500});
   CHECK_THAT(remembered(log), Catch::StartsWith("log: touched with") && Catch::Contains("2.5") &&
@@ -196,8 +204,8 @@ TEST_CASE("safety and waits in words") {
   const vm::Image& image = remembering().image();
   REQUIRE(image.behaviors[0].priority == vm::kSafetyPriority);
   const std::uint16_t guard = image.behaviors[0].first_rule;
-  CHECK(remembered(event(EventKind::trip, guard)) == "SAFETY: safety rule at line 3 trips");
-  CHECK(remembered(event(EventKind::resume, guard)) == "SAFETY: safety rule at line 3 lets go");
+  CHECK(remembered(event(EventKind::trip, guard)) == "SAFETY: safety rule at line 4 trips");
+  CHECK(remembered(event(EventKind::resume, guard)) == "SAFETY: safety rule at line 4 lets go");
   const std::uint16_t rule = image.behaviors[1].first_rule;
   CHECK_THAT(remembered(event(EventKind::wait, rule)), Catch::EndsWith(" waits"));
   CHECK_THAT(remembered(event(EventKind::go_on, rule)), Catch::EndsWith(" goes on"));
