@@ -25,7 +25,8 @@ public:
     for (const ast::Stmt& stmt : block)
       std::visit([this](const auto& node) { visit(node); }, stmt.node);
   }
-  ActuatorNames names;
+  [[nodiscard]] const ActuatorNames& names() const { return names_; }
+  [[nodiscard]] const std::set<std::pair<const ast::Define*, Given>>& seen() const { return seen_; }
 
 private:
   void visit(const ast::Command& node) {
@@ -44,7 +45,7 @@ private:
       add(node.name->text);
     } else if (robot_ != nullptr) {
       for (const ActuatorConfig& actuator : robot_->actuators)
-        names.insert(actuator.name.text);
+        names_.insert(actuator.name.text);
     }
   }
   template <typename Other>
@@ -83,16 +84,16 @@ private:
   // Without a robot, the first word of a command is its actuator.
   bool add(std::string_view written) {
     const std::string name = meant(written);
-    if (robot_ == nullptr) return names.insert(name), true;
+    if (robot_ == nullptr) return names_.insert(name), true;
     for (const ActuatorConfig& actuator : robot_->actuators) {
       if (ascii::same(actuator.name.text, name)) {
-        return names.insert(actuator.name.text), true;
+        return names_.insert(actuator.name.text), true;
       }
     }
     for (const GroupConfig& group : robot_->groups) {
       if (!ascii::same(group.name.text, name)) continue;
       for (const std::size_t member : group.members)
-        names.insert(robot_->actuators[member].name.text);
+        names_.insert(robot_->actuators[member].name.text);
       return true;
     }
     return false;
@@ -123,7 +124,7 @@ private:
       if (std::ranges::any_of(actuator.verbs, [&](const VerbConfig& known) {
             return ascii::same(known.name, verb);
           })) {
-        names.insert(actuator.name.text);
+        names_.insert(actuator.name.text);
       }
     }
   }
@@ -131,6 +132,7 @@ private:
   Trees trees_;
   const Defines& defines_;
   const Robot* robot_;
+  ActuatorNames names_;
   Given given_;
   std::set<std::pair<const ast::Define*, Given>> seen_;
 };
@@ -147,11 +149,13 @@ bool share(const Party& a, const Party& b) {
 
 }  // namespace
 
-ActuatorNames actuators_of(const ast::Block& block, Trees trees, const Defines& defines,
-                           const Robot* robot) {
+void add_used(const ast::Block& block, Trees trees, const Defines& defines, const Robot* robot,
+              Used& used) {
   Walk walk(trees, defines, robot);
   walk.block(block);
-  return std::move(walk.names);
+  used.actuators.insert(walk.names().begin(), walk.names().end());
+  for (const auto& [define, given] : walk.seen())
+    used.defines.insert(define);
 }
 
 std::vector<std::string> meetings(const Party& party, const std::vector<Party>& parties) {

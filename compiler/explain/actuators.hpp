@@ -15,9 +15,15 @@ namespace robosync::compiler::explain {
 // Names of actuators; for a group, its members. Without a robot, the names in the program.
 using ActuatorNames = std::set<std::string>;
 
-// `trees` contain the MOTIONs that PERFORM can name. `robot` may be null.
-[[nodiscard]] ActuatorNames actuators_of(const ast::Block& block, Trees trees,
-                                         const Defines& defines, const Robot* robot);
+// What a response uses, also in the DEFINEs that it does.
+struct Used {
+  ActuatorNames actuators;
+  std::set<const ast::Define*> defines;
+};
+
+// Adds what `block` uses. `trees` contain the MOTIONs that PERFORM can name. `robot` may be null.
+void add_used(const ast::Block& block, Trees trees, const Defines& defines, const Robot* robot,
+              Used& used);
 
 // A behaviour, or a rule outside one.
 struct Party {

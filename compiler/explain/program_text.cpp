@@ -75,23 +75,12 @@ private:
     });
   }
 
-  // Those of modules only if something that is told does them, or the text would be a library's.
+  // The DEFINEs of modules only if they are used, or the text would be a library's.
   void tell_defines() {
-    std::set<const ast::Define*> told;
-    for (bool more = true; more;) {
-      more = false;
-      for_each_item([&](const ast::Item& item) {
-        const auto* const node = std::get_if<ast::Define>(&item.node);
-        if (node == nullptr || !(is_own(item) || is_named(*node)) || !told.insert(node).second)
-          return;
-        tell(*node, item.span);
-        more = true;
-      });
-    }
-  }
-  bool is_named(const ast::Define& define) const {
-    return folded(text_).find(folded(fmt::format("(see DEFINE {})", define.name.text))) !=
-           std::string::npos;
+    for_each_item([&](const ast::Item& item) {
+      const auto* const node = std::get_if<ast::Define>(&item.node);
+      if (node != nullptr && (is_own(item) || used_defines_.contains(node))) tell(*node, item.span);
+    });
   }
 
   bool is_own(const ast::Item& item) const { return item.span.file == own_file_; }
@@ -226,10 +215,15 @@ private:
     return 0;
   }
 
-  void add(ActuatorNames& names, const ast::Rule& rule) const {
-    const auto block = [&](const ast::Block& body) {
-      names.merge(actuators_of(body, trees_, defines_, robot_));
-    };
+  ActuatorNames used_by(const ast::Block& body) {
+    Used used;
+    add_used(body, trees_, defines_, robot_, used);
+    used_defines_.merge(used.defines);
+    return used.actuators;
+  }
+
+  void add(ActuatorNames& names, const ast::Rule& rule) {
+    const auto block = [&](const ast::Block& body) { names.merge(used_by(body)); };
     if (const auto* when = std::get_if<ast::WhenRule>(&rule.node)) {
       block(when->then_block);
       if (when->else_block) block(*when->else_block);
@@ -257,6 +251,11 @@ private:
                     {}};
         add(party.actuators, *rule);
         parties_.push_back(std::move(party));
+      } else if (const auto* const safety = std::get_if<ast::Safety>(&item.node)) {
+        (void)used_by(safety->body);
+      } else if (const auto* const define = std::get_if<ast::Define>(&item.node);
+                 define != nullptr && is_own(item)) {
+        (void)used_by(define->body);
       }
     });
   }
@@ -314,6 +313,7 @@ private:
   const SourceMap& sources_;
   const Robot* robot_;
   Defines defines_;
+  std::set<const ast::Define*> used_defines_;
   std::vector<Party> parties_;  // in the order of the file
   std::size_t next_party_ = 0;
   std::string text_;
