@@ -36,6 +36,7 @@ class Robot:
         self.images = [self._compile(rules) for rules in SIZES]
         self.board = None
         self.names = {}
+        self.running = None
 
     def begin(self):
         """It has kept both programs."""
@@ -51,7 +52,8 @@ class Robot:
 
     def _keep(self, image):
         rsc.run("upload", image, "--port", self.board.port)
-        return self.settled()["kept"]["program"]["hash"]
+        self.settle()
+        return self.running
 
     def switch_on(self):
         self.board = Board(FIRMWARE, icount=FAST, store=self.folder / "store")
@@ -64,14 +66,14 @@ class Robot:
         return subprocess.Popen([rsc.TOOL, "upload", image, "--port", self.board.port], stdin=subprocess.DEVNULL,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
-    def settled(self):
-        """What it says of itself when it runs a program, and no trial is under way any more. (It may have started with it between the two
-        questions.)"""
+    def settle(self):
+        """Waits until it runs a program and no trial is under way any more: `running` is that program then."""
         give_up = time.monotonic() + PATIENCE
         while True:
             said = rsc.info(self.board.port)
-            if said["kept"]["state"] == "kept" and said["board"]["program"]:
-                return said
+            if said["kept"]["state"] == "kept" and said["board"]["program"]:  # it may have started with it between the two questions
+                self.running = said["board"]["program"]["hash"]
+                return
             if time.monotonic() > give_up:
                 raise Broken(f"after {PATIENCE} s it still says {said['kept']}")
 
@@ -86,7 +88,8 @@ def reset(robot):
 
 def one(robot, draw):
     """An upload and its end: what happened, in words."""
-    image, end = draw.choice(robot.images), draw.choice((cut, reset))
+    image = next(image for image, name in robot.names.items() if name != robot.running)
+    end = draw.choice((cut, reset))
     after = draw.random() * LONGEST
     upload = robot.uploading(image)
     time.sleep(after)
@@ -101,11 +104,11 @@ def one(robot, draw):
         raise Broken("rsc upload does not end") from None
     if upload.returncode not in (0, 1, 3) or (upload.returncode and not said.startswith("rsc: ")):
         raise Broken(f"rsc upload ended with {upload.returncode}: {said}")
-    running = robot.settled()["board"]["program"]["hash"]
-    if running not in robot.names.values():
-        raise Broken(f"{running} runs, which nobody has uploaded")
-    before = "the program before" if running != robot.names[image] else "that program"
-    return f"{end.__name__} {after * 1000:.0f} ms after the call of rsc, which ended with {upload.returncode}; {before} runs"
+    robot.settle()
+    if robot.running not in robot.names.values():
+        raise Broken(f"{robot.running} runs, which nobody has uploaded")
+    which = "the new program" if robot.running == robot.names[image] else "the program before"
+    return f"{end.__name__} {after * 1000:.0f} ms after the call of rsc, which ended with {upload.returncode}; {which} runs"
 
 
 def campaign(runs, seed, show=lambda *_: None):
