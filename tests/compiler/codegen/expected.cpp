@@ -15,15 +15,15 @@ std::string told(const std::string& what, const std::map<std::size_t, oracle::Nu
   return text;
 }
 
-std::string told(const oracle::Deed& deed) {
+std::string told(const oracle::Effect& effect) {
   std::map<std::size_t, oracle::Number> values;
-  if (const auto* said = std::get_if<oracle::Said>(&deed)) {
+  if (const auto* said = std::get_if<oracle::Said>(&effect)) {
     for (std::size_t i = 0; i < said->values.size(); ++i)
       values[i] = said->values[i];
     return told((said->alert ? "alert " : "log ") + said->text, values);
   }
   constexpr const char* kNames[] = {"left", "right", "sound"};
-  const auto& [actuators, order] = std::get<oracle::Commanded>(deed);
+  const auto& [actuators, order] = std::get<oracle::Commanded>(effect);
   for (const auto& [param, value] : order.given)
     values[static_cast<std::size_t>(param)] = value;
   return told(order.command->group ? "arms" : kNames[actuators[0]], values);
@@ -42,19 +42,19 @@ oracle::Snapshot snapshot_of(const World& world) {
   return snapshot;
 }
 
-Deeds expected_deeds(const ir::Block& block, const std::vector<ir::Variable>& variables,
+Effects expected_effects(const ir::Block& block, const std::vector<ir::Variable>& variables,
                      World& world, unsigned pauses, oracle::Chance chance,
                      const std::function<void(World&)>& pass_time) {
   oracle::Evaluator evaluator;
   oracle::Response response(block, 0);
-  Deeds deeds;
+  Effects effects;
   for (unsigned pause = 0; pause <= pauses; ++pause) {
     const oracle::Snapshot snapshot = snapshot_of(world);
     const oracle::Surroundings around{evaluator, chance, variables, snapshot, world.now, true};
     if (!response.waits() || response.may_go_on(around)) {
       const oracle::Output output = response.run(around);
-      for (const oracle::Deed& deed : output.deeds)
-        deeds.push_back(told(deed));
+      for (const oracle::Effect& effect : output.effects)
+        effects.push_back(told(effect));
       for (const auto& [variable, value] : output.seen)
         world.variables[variable] = oracle::value_of(value);
     }
@@ -63,7 +63,7 @@ Deeds expected_deeds(const ir::Block& block, const std::vector<ir::Variable>& va
     world.now = static_cast<std::uint32_t>(std::max(next, response.wait_ends().value_or(next)));
     pass_time(world);
   }
-  return deeds;
+  return effects;
 }
 
 }  // namespace robosync::compiler::testing

@@ -11,7 +11,7 @@ namespace robosync::compiler::testing {
 [[nodiscard]] oracle::Snapshot snapshot_of(const World& world);
 
 // As Runner::respond: until the end, or until it has paused `pauses` times. It draws from `chance`.
-Deeds expected_deeds(const ir::Block& block, const std::vector<ir::Variable>& variables,
+Effects expected_effects(const ir::Block& block, const std::vector<ir::Variable>& variables,
                      World& world, unsigned pauses, oracle::Chance chance,
                      const std::function<void(World&)>& pass_time);
 

@@ -83,8 +83,8 @@ TEST_CASE("a random response does what its program says, whatever happens while 
     const auto weather = [seed](World& world) { some_readings(seed ^ world.now, world); };
     World world = some_world(seed), expected_world = world;
     const oracle::Chance chance(seed, 0);
-    const Deeds expected =
-        expected_deeds(block, Generator::variables(), expected_world, kPauses, chance, weather);
+    const Effects expected =
+        expected_effects(block, Generator::variables(), expected_world, kPauses, chance, weather);
     Runner runner(built.image, 0);
     runner.machine.random = chance.state();
     REQUIRE(runner.respond(0, world, kPauses, weather) == expected);

@@ -100,17 +100,17 @@ vm::Value Runner::condition(std::size_t rule, const World& world) {
       machine, image_.code.data() + image_.rules[behavior_.first_rule + rule].condition_start);
 }
 
-void Runner::take_output(Deeds& deeds) {
+void Runner::take_output(Effects& effects) {
   vm::OutputReader reader(
       {output_.data(), static_cast<std::size_t>(machine.output - output_.data())});
   vm::Output output;
   while (reader.next(output))
-    deeds.push_back(describe(image_, output));
+    effects.push_back(describe(image_, output));
 }
 
-Deeds Runner::respond(std::size_t rule, World& world, unsigned pauses,
+Effects Runner::respond(std::size_t rule, World& world, unsigned pauses,
                       const std::function<void(World&)>& pass_time) {
-  Deeds deeds;
+  Effects effects;
   const auto response = image_.rules[behavior_.first_rule + rule].then_response;
   const vm::Word* code = image_.code.data() + image_.responses[response].start;
   ended = false;
@@ -120,7 +120,7 @@ Deeds Runner::respond(std::size_t rule, World& world, unsigned pauses,
     machine.output = output_.data();
     machine.output_end = output_.data() + output_.size();
     const vm::Progress progress = vm::respond(machine, code);
-    take_output(deeds);
+    take_output(effects);
     commit(world);
     ended = progress.pause == vm::Pause::ended;
     if (ended || pause == pauses) break;
@@ -128,7 +128,7 @@ Deeds Runner::respond(std::size_t rule, World& world, unsigned pauses,
     world.now = progress.pause == vm::Pause::until_time ? progress.wake : world.now + 1;
     if (pass_time) pass_time(world);
   }
-  return deeds;
+  return effects;
 }
 
 }  // namespace robosync::compiler::testing

@@ -20,7 +20,7 @@ struct World {
 };
 
 // One command, text or halt: "left to 5000 over 10", "log at {} to 3".
-using Deeds = std::vector<std::string>;
+using Effects = std::vector<std::string>;
 
 class Runner {
 public:
@@ -30,7 +30,7 @@ public:
   // Runs rule's response until it ends, or until it has paused `pauses` times. At each pause
   // `world` is handed to `pass_time`, with `now` already brought on. Variables that were set are
   // set in `world` then.
-  Deeds respond(std::size_t rule, World& world, unsigned pauses,
+  Effects respond(std::size_t rule, World& world, unsigned pauses,
                 const std::function<void(World&)>& pass_time = {});
 
   vm::Machine machine;
@@ -41,7 +41,7 @@ private:
   void latch(const World& world);
   void commit(World& world);
   void evaluate_watches();
-  void take_output(Deeds& deeds);
+  void take_output(Effects& effects);
 
   const vm::Image& image_;
   const vm::Behavior& behavior_;

@@ -21,7 +21,7 @@ ir::Statement turn_to(E value) {
 constexpr unsigned kPauses = 50;
 
 // What an AT START response does in the world.
-Deeds deeds(ir::Block block, World world, std::vector<ir::Variable> variables = {},
+Effects effects(ir::Block block, World world, std::vector<ir::Variable> variables = {},
             const std::function<void(World&)>& pass_time = {}) {
   for (const ir::Variable& one : variables)
     world.variables.push_back(one.initial);
@@ -35,8 +35,8 @@ World with_level(vm::Value level) {
   return world;
 }
 
-std::size_t count(const Deeds& deeds, const std::string& what) {
-  return static_cast<std::size_t>(std::count(deeds.begin(), deeds.end(), what));
+std::size_t count(const Effects& effects, const std::string& what) {
+  return static_cast<std::size_t>(std::count(effects.begin(), effects.end(), what));
 }
 
 }  // namespace
@@ -44,12 +44,12 @@ std::size_t count(const Deeds& deeds, const std::string& what) {
 TEST_CASE("IF chooses a side only when it knows") {
   const ir::Block block = {line(10, ir::If{greater(channel(0), number(3)), {kLeft}, {kRight}}),
                            kSound};
-  CHECK(deeds(block, with_level(4000)) == Deeds{"left", "sound"});
-  CHECK(deeds(block, with_level(3000)) == Deeds{"right", "sound"});
-  CHECK(deeds(block, with_level(vm::kUnknown)) == Deeds{"sound"});
+  CHECK(effects(block, with_level(4000)) == Effects{"left", "sound"});
+  CHECK(effects(block, with_level(3000)) == Effects{"right", "sound"});
+  CHECK(effects(block, with_level(vm::kUnknown)) == Effects{"sound"});
   const ir::Block alone = {line(10, ir::If{greater(channel(0), number(3)), {kLeft}, {}})};
-  CHECK(deeds(alone, with_level(4000)) == Deeds{"left"});
-  CHECK(deeds(alone, with_level(vm::kUnknown)).empty());
+  CHECK(effects(alone, with_level(4000)) == Effects{"left"});
+  CHECK(effects(alone, with_level(vm::kUnknown)).empty());
 }
 
 TEST_CASE("REPEAT runs as often as it is told") {
@@ -58,11 +58,11 @@ TEST_CASE("REPEAT runs as often as it is told") {
       {3000, 3}, {1000, 1}, {2500, 3}, {1, 1}, {0, 0}, {-2000, 0}, {vm::kUnknown, 0}};
   for (const auto& [level, times] : expected) {
     INFO(level);
-    CHECK(deeds(block, with_level(level)).size() == times);
+    CHECK(effects(block, with_level(level)).size() == times);
     if (level == vm::kUnknown) continue;
     ir::Repeat constant{ir::RepeatKind::times, number(0), {kLeft}};
     constant.control.constant = level;
-    CHECK(deeds({line(10, constant)}, {}).size() == times);
+    CHECK(effects({line(10, constant)}, {}).size() == times);
   }
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("REPEATs nest, and each keeps its own count") {
   const ir::Statement inner =
       line(11, ir::Repeat{ir::RepeatKind::times, channel(0), {kLeft, kWait}});
   const ir::Block block = {line(10, ir::Repeat{ir::RepeatKind::times, number(3), {inner, kRight}})};
-  const Deeds done = deeds(block, with_level(2000));
+  const Effects done = effects(block, with_level(2000));
   CHECK(done.size() == 9);
   CHECK(count(done, "left") == 6);
 }
@@ -81,8 +81,8 @@ TEST_CASE("REPEAT WHILE ends when its condition does") {
                           less(variable(0), number(3)),
                           {kLeft, line(11, ir::Set{0, number(1), true}), kWait}}),
       kSound};
-  CHECK(deeds(block, {}, {plain("n")}) == Deeds{"left", "left", "left", "sound"});
-  CHECK(deeds(block, {}, {plain("n", 3)}) == Deeds{"sound"});
+  CHECK(effects(block, {}, {plain("n")}) == Effects{"left", "left", "left", "sound"});
+  CHECK(effects(block, {}, {plain("n", 3)}) == Effects{"sound"});
 }
 
 TEST_CASE("PICK ONE takes each option as often as its share says") {
@@ -94,7 +94,7 @@ TEST_CASE("PICK ONE takes each option as often as its share says") {
   constexpr int kRuns = 10000;
   for (int i = 0; i < kRuns; ++i) {
     World world;
-    const Deeds done = runner.respond(0, world, 0);
+    const Effects done = runner.respond(0, world, 0);
     REQUIRE(done.size() == 1);
     ++taken[done[0]];
   }
@@ -107,12 +107,12 @@ TEST_CASE("a response sees what it has set, clamped") {
   const ir::Statement raise = line(10, ir::Set{0, number(60), true});
   const ir::Statement lower = line(11, ir::Set{0, channel(0), true});
   const std::vector<ir::Variable> joy = {ranged("joy", 0, 100)};
-  CHECK(deeds({raise, raise, turn_to(variable(0))}, {}, joy) == Deeds{"left 0:100000"});
-  CHECK(deeds({raise, lower, turn_to(variable(0))}, with_level(-90000), joy) == Deeds{"left 0:0"});
-  CHECK(deeds({line(10, ir::Set{0, number(150), false}), turn_to(variable(0))}, {}, joy) ==
-        Deeds{"left 0:100000"});
-  CHECK(deeds({line(10, ir::Set{0, channel(0), false}), turn_to(variable(0))}, with_level(-5000),
-              joy) == Deeds{"left 0:0"});
+  CHECK(effects({raise, raise, turn_to(variable(0))}, {}, joy) == Effects{"left 0:100000"});
+  CHECK(effects({raise, lower, turn_to(variable(0))}, with_level(-90000), joy) == Effects{"left 0:0"});
+  CHECK(effects({line(10, ir::Set{0, number(150), false}), turn_to(variable(0))}, {}, joy) ==
+        Effects{"left 0:100000"});
+  CHECK(effects({line(10, ir::Set{0, channel(0), false}), turn_to(variable(0))}, with_level(-5000),
+              joy) == Effects{"left 0:0"});
 }
 
 TEST_CASE("SET assigns, RAISE only shifts, and unknown does neither") {
@@ -136,20 +136,20 @@ TEST_CASE("WAIT UNTIL goes on when its condition is true, or when its time is ov
     world.channels[1] = static_cast<vm::Value>(world.now);
     if (world.now == 5) world.channels[0] = 4000;
   };
-  CHECK(deeds(block, with_level(0), {}, clock) == Deeds{"left 0:5"});
+  CHECK(effects(block, with_level(0), {}, clock) == Effects{"left 0:5"});
   const auto never = [](World& world) {
     world.channels[1] = static_cast<vm::Value>(world.now);
     world.channels[0] = vm::kUnknown;
   };
-  CHECK(deeds(block, with_level(0), {}, never) == Deeds{"left 0:10"});
-  CHECK(deeds(block, with_level(4000), {}, clock) == Deeds{"left 0:1"});
+  CHECK(effects(block, with_level(0), {}, never) == Effects{"left 0:10"});
+  CHECK(effects(block, with_level(4000), {}, clock) == Effects{"left 0:1"});
 }
 
 TEST_CASE("what a DEFINE is given outlasts waits, whatever the sensors do") {
   const ir::Block block = {line(10, ir::Local{7, of(Operation::multiply, {channel(0), number(2)})}),
                            kWait, line(11, ir::Then{}), turn_to(local(7))};
   const auto later = [](World& world) { world.channels[0] = 1; };
-  CHECK(deeds(block, with_level(21000), {}, later) == Deeds{"left 0:42000"});
+  CHECK(effects(block, with_level(21000), {}, later) == Effects{"left 0:42000"});
 }
 
 TEST_CASE("a watched time word is seen inside the response") {
@@ -157,7 +157,7 @@ TEST_CASE("a watched time word is seen inside the response") {
   const ir::Block block = {line(10, ir::If{long_enough, {kLeft}, {kRight}}),
                            line(11, ir::WaitUntil{long_enough, {}}), turn_to(channel(1))};
   const auto clock = [](World& world) { world.channels[1] = static_cast<vm::Value>(world.now); };
-  CHECK(deeds(block, with_level(4000), {}, clock) == Deeds{"right", "left 0:20"});
+  CHECK(effects(block, with_level(4000), {}, clock) == Effects{"right", "left 0:20"});
 }
 
 TEST_CASE("a rule outside reads a limit beyond the 256th constant") {
@@ -184,6 +184,6 @@ TEST_CASE("a rule outside reads a limit beyond the 256th constant") {
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
     INFO(i);
     CHECK(runner.condition(i, world) == comparisons[i].second);
-    CHECK(runner.respond(i, world, 0) == Deeds{"left 0:100000"});
+    CHECK(runner.respond(i, world, 0) == Effects{"left 0:100000"});
   }
 }

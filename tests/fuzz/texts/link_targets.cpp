@@ -168,9 +168,9 @@ public:
   Robot& robot() { return robot_; }
 
   void play() {
-    for (unsigned deeds = 0; deeds < kMostDeeds && !script_.has_ended(); ++deeds) {
+    for (unsigned count = 0; count < kMaxActions && !script_.has_ended(); ++count) {
       try {
-        deed();
+        act();
       } catch (const tool::Failure& failure) {
         require(*failure.what() != '\0', "a failure says nothing");
       }
@@ -194,7 +194,7 @@ public:
   }
 
 private:
-  static constexpr unsigned kMostDeeds = 24;
+  static constexpr unsigned kMaxActions = 24;
 
   void upload(const tool::Program& which) {
     tool::Client client(robot_, kPatience, true);
@@ -205,7 +205,7 @@ private:
     (void)tool::upload(client, client.hello(), which.bytes(), options);
   }
 
-  void deed() {
+  void act() {
     tool::Client client(robot_, kPatience, script_.byte() % 2 == 0);
     const std::uint8_t argument = script_.byte();
     switch (argument % 8) {
@@ -300,22 +300,17 @@ private:
   link::ProgramHash seen_{};
 };
 
+void forge(test::Way Robot::*direction, std::string_view input) {
+  Script script(input);
+  Scene scene(script);
+  (scene.robot().*direction).set(Forger(script));
+  scene.play();
+  scene.end();
+}
+
 }  // namespace
 
-void board(std::string_view input) {
-  Script script(input);
-  Scene scene(script);
-  scene.robot().to_board.set(Forger(script));
-  scene.play();
-  scene.end();
-}
-
-void host(std::string_view input) {
-  Script script(input);
-  Scene scene(script);
-  scene.robot().to_host.set(Forger(script));
-  scene.play();
-  scene.end();
-}
+void board(std::string_view input) { forge(&Robot::to_board, input); }
+void host(std::string_view input) { forge(&Robot::to_host, input); }
 
 }  // namespace robosync::fuzz

@@ -191,12 +191,12 @@ void Interpreter::say(const Said& said) {
 void Interpreter::carry_out(const Output& output) {
   std::set<std::size_t> started;
   std::set<std::size_t> overrun;  // which is said once a step
-  for (const Deed& deed : output.deeds) {
-    if (const auto* said = std::get_if<Said>(&deed)) {
+  for (const Effect& effect : output.effects) {
+    if (const auto* said = std::get_if<Said>(&effect)) {
       say(*said);
       continue;
     }
-    const auto& [targets, order] = std::get<Commanded>(deed);
+    const auto& [targets, order] = std::get<Commanded>(effect);
     for (const std::size_t actuator : targets) {
       started.insert(actuator);
       if (actuators_.submit(actuator, order)) continue;

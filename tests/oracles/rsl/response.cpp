@@ -94,7 +94,7 @@ void Response::run(const compiler::ir::Command& node) {
   Order order{rule_, &node, {}};
   for (const compiler::ir::Argument& argument : node.arguments)
     order.given.emplace_back(argument.param, number(argument.value));
-  output_.deeds.emplace_back(Commanded{node.actuators, std::move(order)});
+  output_.effects.emplace_back(Commanded{node.actuators, std::move(order)});
 }
 
 void Response::run(const compiler::ir::Local& node) {
@@ -169,7 +169,7 @@ void Response::run(const compiler::ir::Log& node) {
   std::vector<Number> values;
   for (const compiler::Expression& value : node.values)
     values.push_back(number(value));
-  output_.deeds.emplace_back(Said{node.alert, node.text, std::move(values)});
+  output_.effects.emplace_back(Said{node.alert, node.text, std::move(values)});
 }
 
 void Response::run(const compiler::ir::Halt&) {}  // of SAFETY rules, which have no responses

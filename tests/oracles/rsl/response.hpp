@@ -23,11 +23,11 @@ struct Said {
   std::string text;
   std::vector<Number> values;
 };
-using Deed = std::variant<Commanded, Said>;
+using Effect = std::variant<Commanded, Said>;
 
 // What a response puts out in one step.
 struct Output {
-  std::vector<Deed> deeds;  // in their order
+  std::vector<Effect> effects;  // in their order
   Changes changes;
   std::map<std::size_t, Number> seen;  // what it SET, RAISEd or LOWERed, as it sees it itself
 };
