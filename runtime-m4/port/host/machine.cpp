@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 
 #include "runtime-m4/kernel/kernel.hpp"
 
@@ -14,7 +15,21 @@ namespace robosync::port {
 
 namespace {
 
-constexpr std::size_t kFiberStack = std::size_t{128} * 1024;
+constexpr std::size_t kStackBytes = std::size_t{128} * 1024;
+
+// Stacks that no fiber uses. A plain array, because contexts in static storage are destroyed after most other objects.
+constexpr std::size_t kMaxSpareStacks = 128;
+constinit std::array<std::byte*, kMaxSpareStacks> spare_stacks{};
+constinit std::size_t spare_stack_count = 0;
+constinit std::mutex spare_stacks_lock;
+
+FiberStack take_stack() {
+  {
+    const std::lock_guard lock(spare_stacks_lock);
+    if (spare_stack_count > 0) return FiberStack(spare_stacks[--spare_stack_count]);
+  }
+  return FiberStack(new std::byte[kStackBytes]);
+}
 
 // The machine that is switching: makecontext cannot pass it to a new fiber.
 thread_local Machine* switching = nullptr;
@@ -58,18 +73,29 @@ void announce_arrival([[maybe_unused]] void* kept, [[maybe_unused]] Context& cam
 
 }  // namespace
 
+void ReturnStack::operator()(std::byte* stack) const noexcept {
+  {
+    const std::lock_guard lock(spare_stacks_lock);
+    if (spare_stack_count < kMaxSpareStacks) {
+      spare_stacks[spare_stack_count++] = stack;
+      return;
+    }
+  }
+  delete[] stack;
+}
+
 void Machine::prepare(Context& context, const kernel::ThreadSpec& spec, std::span<std::byte>) {
-  if (context.stack == nullptr) context.stack = std::make_unique<std::byte[]>(kFiberStack);
+  if (context.stack == nullptr) context.stack = take_stack();
   context.entry = spec.entry;
   context.argument = spec.argument;
   context.sanitizer_stack = nullptr;
   context.stack_bottom = context.stack.get();
-  context.stack_bytes = kFiberStack;
+  context.stack_bytes = kStackBytes;
   announce_empty(context);
   context.has_run = false;
   getcontext(&context.begin);
   context.begin.uc_stack.ss_sp = context.stack.get();
-  context.begin.uc_stack.ss_size = kFiberStack;
+  context.begin.uc_stack.ss_size = kStackBytes;
   context.begin.uc_link = nullptr;
   makecontext(&context.begin, &Machine::fiber_main, 0);
 }

@@ -37,13 +37,19 @@ struct Areas {
   std::span<std::byte> writable;
 };
 
+// The memory of a fiber's stack. A stack that is given back is kept for the next fiber, since a fresh one costs a page fault per page.
+struct ReturnStack {
+  void operator()(std::byte* stack) const noexcept;
+};
+using FiberStack = std::unique_ptr<std::byte[], ReturnStack>;
+
 struct Context {
   union {
     ucontext_t begin{};              // until it first runs
     std::array<void*, 5> registers;  // saved when it is switched out
   };
   bool has_run = false;
-  std::unique_ptr<std::byte[]> stack;
+  FiberStack stack;
   void (*entry)(void*) = nullptr;
   void* argument = nullptr;
   // For AddressSanitizer, which must know which stack is in use.
