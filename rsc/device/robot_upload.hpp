@@ -50,7 +50,6 @@ void print_json(const nlohmann::ordered_json& json);
 [[nodiscard]] Uploaded upload_to(const std::string& port, const Program& program,
                                  const SendOptions& options, const Progress& progress);
 // Throws Failure (program) when the program has not stood its trial.
-void expect_trial_stood(const SendOptions& options, const Uploaded& uploaded,
-                        const Program& program);
+void expect_trial_stood(const std::string& file, const link::Kept& kept, const Program& program);
 
 }  // namespace robosync::tool

@@ -37,7 +37,7 @@ void serve(Robot& robot, const SendOptions& options, const Program& program) {
   };
   try {
     robot.uploaded = upload_to(robot.port, program, options, {});
-    expect_trial_stood(options, *robot.uploaded, program);
+    expect_trial_stood(options.file, robot.uploaded->kept, program);
   } catch (const Failure& failure) {
     fails(failure.exit(), failure.what());
   } catch (const std::exception& error) {

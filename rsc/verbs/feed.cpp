@@ -15,6 +15,7 @@
 #include "rsc/console.hpp"
 #include "rsc/device/line_recorder.hpp"
 #include "rsc/device/printer.hpp"
+#include "rsc/device/robot_upload.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
@@ -257,6 +258,8 @@ void feed(const FeedOptions& options) {
   const std::size_t count = stimuli.scenario.size() + stimuli.readings.size();
   if (watch) {
     watch->show(*options.watch + feeder.rest());
+    if (!options.upload.empty())
+      expect_trial_stood(options.upload, session->client.kept(), *program);
   } else if (options.format == Format::human) {
     std::cout << fmt::format("{} reading{} fed\n", count, count == 1 ? "" : "s");
   }

@@ -44,7 +44,7 @@ void upload_to_one(const SendOptions& options, const Program& program) {
   const Uploaded uploaded = upload_to(options.ports.front(), program, options,
                                       stderr_is_terminal() ? show_progress : Progress());
   report(options, uploaded, program);
-  expect_trial_stood(options, uploaded, program);
+  expect_trial_stood(options.file, uploaded.kept, program);
 }
 
 // Two threads would each take what the robot answers the other.

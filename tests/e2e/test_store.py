@@ -45,6 +45,18 @@ END
 """
 
 
+FED_CONFIG = """{"sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
+ "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "120deg"]}]}"""
+FED_PROGRAM = """SAFETY pressed
+  WHEN touch LEVEL > 5
+  DO STOP ALL
+END
+WHEN touch LEVEL < 3 DO
+  MOVE arm TO 90deg
+END
+"""
+
+
 class Switched(RobotTest):
     """A board that can be switched off and on. `icount`: where the clock of the wall must not run behind a trial, REAL_TIME."""
 
@@ -226,6 +238,19 @@ class Trial(Switched):
         self.assertEqual(self.running(), kept)
         self.assertIn("only tried: in ", self.upload(second, "--no-confirm"))
         self.assertIn("only tried: in ", rsc.run("info", "--port", self.board.port))
+
+    def test_feed_says_that_its_program_failed_its_trial(self):
+        kept = self.keep(self.images()[0])
+        config, program = self.folder / "fed.json", self.folder / "fed.rsl"
+        config.write_text(FED_CONFIG)
+        program.write_text(FED_PROGRAM)
+        fed = ("feed", "--upload", program, "--config", config, "--watch", "500ms", "--port", self.board.port)
+        done = rsc.call(*fed, "touch.LEVEL=9")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn(f"{program} did not stand its trial", done.stderr)
+        self.assertEqual(self.running(), kept)
+        rsc.run(*fed, "touch.LEVEL=1")
+        self.assertNotEqual(self.running(), kept)
 
     def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):
         kept = self.keep(self.compile(PROGRAMS / "priorities.rsl"))
