@@ -1,4 +1,4 @@
-// rsc flash --board NAME [FILE] [--drive FOLDER | --by drive|openocd|pyocd]
+// rsc flash --board NAME [FILE] [--drive FOLDER | --by drive|openocd|pyocd|dfu-util]
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using compiler::Board;
 
-enum class Way : std::uint8_t { drive, openocd, pyocd };
-const std::vector<std::string> kWays = {"drive", "openocd", "pyocd"};
+enum class Way : std::uint8_t { drive, openocd, pyocd, dfu_util };
+const std::vector<std::string> kWays = {"drive", "openocd", "pyocd", "dfu-util"};
 
 struct FlashOptions {
   std::string board, file, drive;
@@ -82,6 +82,18 @@ std::string braced(const fs::path& file) {
 
 std::vector<std::string> command_of(Way way, const Board::Flash& flash, const fs::path& file) {
   if (way == Way::pyocd) return {"pyocd", "flash", "--target", flash.pyocd, file.string()};
+  if (way == Way::dfu_util) {
+    const std::size_t space = flash.dfu.find(' ');
+    return {"dfu-util",
+            "-d",
+            flash.dfu.substr(0, space),
+            "-a",
+            "0",
+            "-s",
+            flash.dfu.substr(space + 1) + ":leave",
+            "-D",
+            file.string()};
+  }
   std::vector<std::string> command = {"openocd"};
   std::istringstream scripts(flash.openocd);
   for (std::string script; scripts >> script;)
@@ -91,12 +103,18 @@ std::vector<std::string> command_of(Way way, const Board::Flash& flash, const fs
 }
 
 void program_by(Way way, const FlashOptions& options, const Board& board) {
-  const fs::path file = find_firmware(options.file, board.name, {".elf", ".hex"});
+  const bool by_dfu = way == Way::dfu_util;
+  const fs::path file = by_dfu ? find_firmware(options.file, board.name, {".bin"})
+                               : find_firmware(options.file, board.name, {".elf", ".hex"});
   const std::vector<std::string> command = command_of(way, *board.flash, file);
   std::cout << fmt::format("runs {}\n", fmt::join(command, " ")) << std::flush;
   if (const int code = run_program(command); code != 0) {
-    throw Failure(Exit::outside, fmt::format("{} ended with {}: is the board connected, by {}?",
-                                             command.front(), code, board.flash->socket));
+    const std::string question =
+        by_dfu
+            ? "is the chip's own USB connected, and its boot loader running (BOOT0 high at reset)?"
+            : fmt::format("is the board connected, by {}?", board.flash->socket);
+    throw Failure(Exit::outside,
+                  fmt::format("{} ended with {}: {}", command.front(), code, question));
   }
   say_what_next(board);
 }
@@ -128,8 +146,12 @@ void flash(const FlashOptions& options) {
   if (may(Way::drive))
     if (const auto drive = mounted_drive(board.flash->drive))
       return copy_to(*drive, options, board);
-  for (const Way way : {Way::openocd, Way::pyocd}) {
+  for (const Way way : {Way::openocd, Way::pyocd, Way::dfu_util}) {
     const std::string& tool = kWays[static_cast<std::size_t>(way)];
+    if (way == Way::dfu_util && board.flash->dfu.empty()) {
+      if (options.by != way) continue;
+      throw Failure(Exit::usage, fmt::format("the {} has no DFU boot loader", board.name));
+    }
     if (may(way) && is_installed(tool)) return program_by(way, options, board);
     if (options.by == way)
       throw Failure(Exit::outside, fmt::format("{} is not installed, or not on PATH", tool));

@@ -88,6 +88,23 @@ TEST_CASE("flash calls openocd, else pyocd, and says with which words") {
   CHECK(computer.has("pyocd.told"));
 }
 
+TEST_CASE("flash calls dfu-util for a chip with a DFU boot loader, and for no other") {
+  const Computer computer;
+  computer.install("dfu-util");
+  const Outcome outcome = computer.flash({computer.hex});  // the .bin beside it
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(computer.read("dfu-util.told") ==
+        "-d\n0483:df11\n-a\n0\n-s\n0x08000000:leave\n-D\n" + computer.bin + "\n");
+  computer.install("dfu-util", 74);
+  const Outcome failed = computer.flash({computer.bin, "--by", "dfu-util"});
+  CHECK(failed.exit == 3);
+  CHECK_THAT(failed.err, Contains("dfu-util ended with 74") && Contains("BOOT0"));
+  const Outcome refused = test::rsc({"flash", "--board", "microbit-v2", "--by", "dfu-util"});
+  CHECK(refused.exit == 2);
+  CHECK_THAT(refused.err, Contains("the microbit-v2 has no DFU boot loader"));
+}
+
 TEST_CASE(
     "flash puts the .hex on a micro:bit's drive, and gives openocd both scripts that it takes") {
   const Computer computer;
