@@ -195,7 +195,7 @@ private:
   cv::Mat of_hue_ = cv::Mat(1, 256, CV_8U, cv::Scalar(kNone));
 };
 
-// ---- what is said of them
+// ---- reports
 
 void tell(const Seen& seen, double view, const std::string& before) {
   if (seen.things.empty()) return;
