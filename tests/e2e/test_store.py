@@ -1,5 +1,5 @@
-"""What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that stood its trial. A new
-QEMU with the same file is a board that was switched off and on."""
+"""What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that passed its trial. A new
+QEMU with the same file plays a board that was switched off and on."""
 
 import json
 import sys
@@ -18,10 +18,10 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
 PATIENCE = 20
-KEEP_ATTEMPTS = 5  # on a machine that stands still now and then
+KEEP_ATTEMPTS = 5  # for a machine that stalls now and then
 SOON_US = 100_000  # from power-up to the first step
-LARGEST_SOON = 4_096  # bytes of an image that comes so soon
-STEADY, OTHER = 5, 3000  # what the sensor's inputs measure
+LARGEST_SOON = 4_096  # bytes of the largest image that starts so soon
+STEADY, OTHER = 5, 3000  # the values at the sensor's inputs
 STEADY_CONFIG = """{
   "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
                "channels": {"LEVEL": {"input": 0, "range": [0, 65535], "rate": "50Hz"},
@@ -58,7 +58,7 @@ END
 
 
 class Switched(RobotTest):
-    """A board that can be switched off and on. `icount`: where the clock of the wall must not run behind a trial, REAL_TIME."""
+    """A board that can be switched off and on. `icount`: REAL_TIME if a trial must not run ahead of real time."""
 
     icount = FAST
 
@@ -97,14 +97,14 @@ class Switched(RobotTest):
         return self.await_kept("kept")["program"]["hash"]
 
     def lost(self):
-        """A machine that stands still for 100 ms looks to the emulated watchdog, in real time, like a firmware that hangs: the board
-        was reset before the program was kept."""
+        """Whether the board was reset before the program was kept: when the host stalls for 100 ms, the emulated watchdog, which
+        runs in real time, assumes that the firmware hangs."""
         while (state := self.kept()["state"]) not in ("kept", "no_program"):
             pass
         return state == "no_program"
 
     def images(self):
-        """Two programs, and their CRCs when they ran here."""
+        """The images of two programs."""
         first = self.compile(PROGRAMS / "priorities.rsl")
         second = self.folder / "second.rsb"
         rsc.run("compile", PROGRAMS / "priorities.rsl", "--config", self.folder / "robot.json", "--seed", 1, "-o", second,
@@ -125,7 +125,7 @@ class Store(Switched):
             self.assertEqual(rsc.info(other.port)["board"]["program"]["hash"], said[1]["program"])
 
     def test_power_that_goes_and_resets_at_any_time_leave_a_kept_program(self):
-        """A few; `scripts/soak power` does more."""
+        """A few runs; `scripts/soak power` does more."""
         ends = []
         self.assertEqual(power_cuts.campaign(6, seed=1, show=lambda _, what: ends.append(what)), [])
         self.assertEqual({what.split()[0] for what in ends}, {"cut", "reset"})
@@ -140,8 +140,8 @@ class Store(Switched):
         self.assertEqual(self.running(), second)
 
     def test_sensors_on_its_bus_never_wait_for_it(self):
-        """While programs that measure a hundred times a second are written, no transfer fails, none is late, and none gives
-        another value than the sensor has."""
+        """While programs that measure a hundred times a second are written to the store, no transfer fails, none is late, and
+        none reads a wrong value."""
         (self.folder / "robot.json").write_text(STEADY_CONFIG)
         program, pulse = self.folder / "program.rsl", symbols(FIRMWARE)["robosync_virtual_pwm"]
         self.board.set_touch(STEADY)
@@ -179,7 +179,7 @@ class Failed(Switched):
 
 class Numbers(Switched):
     def visits(self):
-        """What it says at the next touch."""
+        """The texts that the program logs at the next touch."""
         reader = LineReader("feed", "touch.LEVEL=9", "touch.LEVEL=1", "--port", self.board.port, "--watch", "10s", "--format", "json")
         try:
             self.assertTrue(reader.wait_for(lambda lines: any('"log"' in line for line in lines), PATIENCE), reader.lines)
@@ -198,7 +198,7 @@ class Numbers(Switched):
         self.assertEqual(self.visits(), ["visit 1"])
         self.await_kept("kept")
         self.assertEqual(self.visits(), ["visit 2"])
-        time.sleep(1)  # some seconds of the board's
+        time.sleep(1)  # some seconds of the board's time
         self.board.cut_power()
         self.switch_on()
         self.await_kept("kept")
