@@ -77,7 +77,7 @@ compiler::WordsInFile words_in_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return {{}, "is not there"};
   if (!std::filesystem::is_regular_file(path, error))
-    return {{}, "is no file"};  // a pipe, that waits
+    return {{}, "is not a file"};  // a pipe, that waits
   std::string text(companion::kLargestFile + 1, '\0');
   const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) return {{}, "cannot be read"};

@@ -63,7 +63,7 @@ void Options::option(const std::string& names, const std::string& text, std::str
                      const std::string& description, Need need) {
   const auto take = [&value, name = names.substr(names.rfind(',') + 1)](const std::string& word) {
     if (word.empty())
-      throw std::invalid_argument(name + ": it is given nothing, name a file or leave it out");
+      throw std::invalid_argument(name + ": it is empty; name a file or leave it out");
     value = word;
   };
   add_named(app_, names, text, take, description)->required(need == Need::required);
@@ -165,10 +165,10 @@ std::string mismatch(const CLI::ParseError& error) {
   constexpr std::string_view kRequired = "required ", kMissing = " missing";
   const std::size_t required = said.rfind(kRequired);
   if (said.find("At Most") != std::string_view::npos)
-    return fmt::format("{} may be there once only", name);
+    return fmt::format("{} may be given only once", name);
   if (required == std::string_view::npos || !said.ends_with(kMissing)) return {};
   const std::size_t begin = required + kRequired.size();
-  return fmt::format("{} needs its {} behind it", name,
+  return fmt::format("{} needs {} after it", name,
                      said.substr(begin, said.size() - kMissing.size() - begin));
 }
 
@@ -201,10 +201,9 @@ void parse(CLI::App& app, int count, const char* const* arguments) {
   if (first.empty()) throw Failure(Exit::usage, "say what to do\n" + app.help());
   constexpr std::array<std::string_view, 3> kWithoutVerb = {"-h", "--help", "--version"};
   if (first.starts_with("-") && std::ranges::find(kWithoutVerb, first) == kWithoutVerb.end())
-    throw Failure(Exit::usage,
-                  fmt::format("`{}` stands where a verb does: write rsc VERB, then its options\n"
-                              "`rsc help` lists the verbs",
-                              first));
+    throw Failure(Exit::usage, fmt::format("`{}` is not a verb: write rsc VERB, then its options\n"
+                                           "`rsc help` lists the verbs",
+                                           first));
   if (!first.starts_with("-") && find_verb(first) == nullptr) unknown_verb(first);
   try {
     app.parse(count, const_cast<char**>(arguments));  // CLI11 reads them only

@@ -134,9 +134,8 @@ void refuse_what_is_none(const fs::path& place, const fs::path& program, const T
   const FileKind kind = kind_of_text(texts.read(place));
   if (kind == FileKind::other || kind == FileKind::configuration) return;
   throw Failure(Exit::program,
-                fmt::format("{} is {}, and was taken for the configuration of {} because of its "
-                            "name: give it another name, or name the configuration with "
-                            "--config FILE",
+                fmt::format("{} is {}, but its name makes it the configuration of {}: rename it, "
+                            "or name the configuration with --config FILE",
                             place.string(), describe(kind), program.string()));
 }
 

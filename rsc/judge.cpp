@@ -76,16 +76,16 @@ std::string ms_text(std::uint32_t us) {
 
 Overload overload_of_bus(const vm::Image& image, const analysis::BusLoad& load) {
   Overload overload{
-      fmt::format("all that is asked of I2C bus {} at once takes it {}, and there are {}", load.bus,
-                  ms_text(load.us), ms_text(policy::kBusWindowUs)),
-      {"leave out channels or sensors of this bus"}};
+      fmt::format("I2C bus {} needs {} for all that may be asked of it together, and has {}",
+                  load.bus, ms_text(load.us), ms_text(policy::kBusWindowUs)),
+      {"leave out channels or sensors on this bus"}};
   if (load.shares.size() == 1) return overload;
   std::vector<std::string> parts;
   for (const auto& [sensor, us] : load.shares)
     parts.push_back(fmt::format("{} {}", image.string(image.sensors[sensor].name), ms_text(us)));
   overload.why.insert(
       overload.why.begin(),
-      fmt::format("sensors are asked together at the start, and whenever their periods meet: {}",
+      fmt::format("the sensors are read together at the start, and whenever their periods meet: {}",
                   fmt::join(parts, ", ")));
   return overload;
 }
@@ -146,8 +146,8 @@ void judge_time(const Program& program, const std::string& name) {
                                           : overload_of_bus(image, buses.front());
   if (overload.what.empty()) return;
   throw Failure(Exit::program,
-                fmt::format("{}: {}{}\n  {}\n  --anyway uploads it nevertheless", name,
-                            kCannotKeepUp, overload.what, fmt::join(overload.why, "\n  ")));
+                fmt::format("{}: {}{}\n  {}\n  --anyway uploads it anyway", name, kCannotKeepUp,
+                            overload.what, fmt::join(overload.why, "\n  ")));
 }
 
 }  // namespace robosync::tool

@@ -38,7 +38,7 @@ Json entries_of(const std::string& text, const std::string& file) {
     for (const auto& [name, value] : whole[kKey].items())
       texts = texts && (value.is_string() || value.is_number());
   if (!texts)
-    fail(file, "this is no file of kept numbers: move it away, or name another with --kept");
+    fail(file, "this is not a file of kept numbers: move it away, or name another with --kept");
   return whole[kKey];
 }
 
@@ -79,7 +79,7 @@ void Kept::read() {
       begin(variable, entry, value.is_string() ? value.get<std::string>() : value.dump());
   }
   if (!others.empty())
-    std::cerr << fmt::format("note: {} keeps {} too, which the program does not; it stays there\n",
+    std::cerr << fmt::format("note: {} also keeps {}, which the program does not; it stays there\n",
                              file_, others);
 }
 
@@ -89,10 +89,11 @@ void Kept::begin(std::size_t variable, const std::string& entry, const std::stri
     values_[variable] = parse_quantity(text, program_.image().variables[variable].dimension,
                                        unit != nullptr ? unit->spelling : std::string_view());
   } catch (const std::invalid_argument& error) {
-    fail(file_, fmt::format("`{}`: {}; give the REMEMBER another name, or begin anew with --fresh",
-                            entry, error.what()));
+    fail(file_,
+         fmt::format("`{}`: {}; give the REMEMBER another name, or start afresh with --fresh",
+                     entry, error.what()));
   }
-  std::cerr << fmt::format("note: {} begins with {}, as {} has it\n", entry,
+  std::cerr << fmt::format("note: {} starts at {}, from {}\n", entry,
                            shown(variable, values_[variable]), file_);
 }
 

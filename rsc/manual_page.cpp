@@ -30,11 +30,16 @@ std::string option_text(const OptionUsage& option) {
 
 std::string manual_page(const std::vector<VerbUsage>& verbs) {
   std::string text = fmt::format(
-      ".TH RSC 1 \"\" \"RoboSync {}\"\n.SH NAME\nrsc \\- gives a small robot its behaviour\n"
-      ".SH SYNOPSIS\n.B rsc\n.I VERB\n[\\fIOPTIONS\\fR]\n"
-      ".SH DESCRIPTION\nChecks, compiles, runs and uploads programs in RSL, the language in which "
-      "a robot is "
-      "told what to do when. \\fBrsc help\\fR \\fIVERB\\fR shows what follows here for one verb.\n"
+      ".TH RSC 1 \"\" \"RoboSync {}\"\n"
+      ".SH NAME\n"
+      "rsc \\- gives a small robot its behaviour\n"
+      ".SH SYNOPSIS\n"
+      ".B rsc\n"
+      ".I VERB\n"
+      "[\\fIOPTIONS\\fR]\n"
+      ".SH DESCRIPTION\n"
+      "Checks, compiles, runs and uploads programs in RSL, the language that tells a robot what to "
+      "do and when. \\fBrsc help\\fR \\fIVERB\\fR shows the part of this page about one verb.\n"
       ".SH VERBS\n",
       ROBOSYNC_VERSION);
   for (const VerbUsage& verb : verbs) {

@@ -173,7 +173,7 @@ void check_outputs(const std::vector<std::string>& paths, const std::vector<std:
     for (std::size_t other = 0; other < i; ++other)
       if (!paths[other].empty() && whole_name(paths[other]) == whole_name(paths[i]) &&
           !is_written_through(paths[i], facts_of(paths[i])))
-        refuse(paths[i], "is named for two outputs");
+        refuse(paths[i], "is given for two outputs");
   }
 }
 
@@ -181,7 +181,7 @@ void check_output(const fs::path& path, const std::vector<std::string>& inputs) 
   const auto facts = facts_of(path);
   if (facts && S_ISDIR(facts->st_mode)) fail(path, EISDIR);
   if (facts && !S_ISREG(facts->st_mode)) return;
-  if (path == "-") refuse(path, "is no output, /dev/stdout is");
+  if (path == "-") refuse(path, "is not an output, /dev/stdout is");
   if (!facts) {
     refuse_name_of_configuration(path);
     return;
@@ -198,7 +198,7 @@ void check_output(const fs::path& path, const std::vector<std::string>& inputs) 
   }
   refuse_name_of_configuration(path);
   if (const FileKind kind = kind_of_file(path); is_written_by_people(kind))
-    refuse(path, fmt::format("is there already, and is {}", describe(kind)));
+    refuse(path, fmt::format("already exists, and is {}", describe(kind)));
 }
 
 bool is_stdout(const fs::path& path) {

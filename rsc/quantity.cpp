@@ -48,7 +48,8 @@ vm::Value parse_quantity(std::string_view text, vm::Dimension dimension, std::st
   if (!number) throw std::invalid_argument(fmt::format("`{}` is not a number with a unit", text));
   const std::string_view spelling = trim(whole.substr(digits));
   if (spelling.starts_with(','))
-    throw std::invalid_argument(fmt::format("`{}` has a comma: a decimal point is a point", text));
+    throw std::invalid_argument(
+        fmt::format("`{}` has a comma: write the decimal point as a point", text));
   const compiler::Unit* const unit = compiler::find_unit(spelling);
   if (unit == nullptr) throw std::invalid_argument(fmt::format("there is no unit `{}`", spelling));
   if (unit->dimension != dimension) {

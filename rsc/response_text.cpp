@@ -49,8 +49,8 @@ std::string mend_of(const ResponseReport& report) {
            "or "
            "make those that cost most cheaper";
   return fmt::format(
-      "{} may be 0 s, as far as can be said here: write a number, RANDOM of numbers or MAX(1s, a "
-      "variable), or a WAIT 1s before it",
+      "{} may be 0 s: write a number, RANDOM of numbers or MAX(1s, a variable), or a WAIT 1s "
+      "before it",
       report.short_wait == 0 ? "a WAIT" : fmt::format("the WAIT at line {}", report.short_wait));
 }
 
@@ -84,7 +84,7 @@ std::string response_text(const ResponseReport& report) {
       text += fmt::format("        {:<36}{}\n", "  … others adapted to P_max",
                           time_text(report, path.adapted));
   }
-  return text + fmt::format("        {:<36}{:>48.1f} %\n", "the processor, all of it",
+  return text + fmt::format("        {:<36}{:>48.1f} %\n", "processor, in total",
                             kPercent * report.utilization);
 }
 
@@ -114,7 +114,7 @@ Overload overload_of(const ResponseReport& report) {
   if (report.utilization > 1) {
     overload.what =
         fmt::format("all of it takes {:.0f} % of the processor", kPercent * report.utilization);
-    overload.why.push_back(fmt::format("of the {} instructions of a millisecond it takes {}",
+    overload.why.push_back(fmt::format("of the {} instructions in a millisecond it takes {}",
                                        report.instructions_per_ms, first_of(report.loads)));
   } else {
     const PathTiming& path =

@@ -58,7 +58,7 @@ struct Mqtt::State {
   void connects(int code) {
     const std::scoped_lock lock(mutex);
     if (code != 0) {
-      news = "the broker refuses the connection";
+      news = "the broker refused the connection";
       return;
     }
     connected = true;
@@ -198,7 +198,7 @@ Mqtt::Place parse_broker(const std::string& text) {
   }
   if (place.host.empty())
     throw Failure(Exit::usage,
-                  fmt::format("`{}` is no broker; write HOST:PORT, as in localhost:1883", text));
+                  fmt::format("`{}` is not a broker; write HOST:PORT, as in localhost:1883", text));
   return place;
 }
 

@@ -218,10 +218,9 @@ void Companion::feed_one(Session& session, const Hearer& hearer, Output& output,
   const link::FeedResult result =
       session.client.feed({.channel = output.channel, .at_us = 0, .value = value});
   if (result.error == link::FeedError::not_virtual)
-    throw Failure(Exit::program,
-                  fmt::format("{} {} is measured by the robot, whose program was made with another "
-                              "robot.json: upload it again",
-                              hearer.algorithm.name.text, output.name));
+    throw Failure(Exit::program, fmt::format("{} {} is measured by the robot, whose program was "
+                                             "compiled with another robot.json: upload it again",
+                                             hearer.algorithm.name.text, output.name));
   // Else it is busy, or has just got another program.
   if (result.error == link::FeedError::none) show(hearer, output, value);
 }

@@ -74,7 +74,7 @@ WorkerProcess::WorkerProcess(const std::string& program,
   for (const int file : {out_, err_})
     if (file >= 0) fcntl(file, F_SETFL, O_NONBLOCK);
   if (child_ < 0) {
-    last_words_ = "this computer can start no more programs";
+    last_words_ = "this computer cannot start any more programs";
     status_ = kNotThere << 8;
   }
 }

@@ -45,7 +45,7 @@ bool Worker::listen(const Accept& accept) {
       means_something = true;
     } else if (!has_babbled_) {
       has_babbled_ = true;
-      report_(fmt::format("says what is no reading: {}", printable(line)));
+      report_(fmt::format("sent something that is not a reading: {}", printable(line)));
     }
   }
   return means_something;
@@ -69,7 +69,7 @@ void Worker::look(Clock::time_point now, const Accept& accept) {
   const milliseconds patience =
       has_spoken_ ? std::max(kLeastPatience, plan_.period * kPeriods) : kFirstWord;
   if (now - (has_spoken_ ? alive_ : started_) > patience)
-    end_it(now, fmt::format("has not said anything for {} s: it hangs",
+    end_it(now, fmt::format("has sent nothing for {} s: it hangs",
                             static_cast<double>(patience.count()) / 1000));
 }
 
@@ -90,8 +90,8 @@ void Worker::end_it(Clock::time_point now, const std::string& why) {
   if (now - started_ > kLivesWell) pause_ = kShortestPause;
   process_.reset();
   next_start_ = now + pause_;
-  report_(fmt::format("{}; it is started again in {} s", why,
-                      static_cast<double>(pause_.count()) / 1000));
+  report_(
+      fmt::format("{}; restarting it in {} s", why, static_cast<double>(pause_.count()) / 1000));
   pause_ = std::min(pause_ * 2, kLongestPause);
 }
 

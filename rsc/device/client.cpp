@@ -164,9 +164,9 @@ void Client::heed(const link::Authority& authority, Transport::Clock::time_point
   const milliseconds left(authority.wait_ms);
   if (transport_.now() + left >= give_up)
     throw Failure(Exit::outside,
-                  "somebody has tried to sign orders without the owner's key: the robot looks at "
-                  "none for " +
-                      std::to_string(left.count() / 1000 + 1) + " s; say this again then");
+                  "somebody has tried to sign orders without the owner's key: the robot ignores "
+                  "signed orders for " +
+                      std::to_string(left.count() / 1000 + 1) + " s; try again then");
   wait(left);
 }
 
@@ -194,12 +194,10 @@ void Client::reopen(const Message& busy, bool& tried) {
   }
   if (tried) {
     const std::string host(by.host.begin(), std::find(by.host.begin(), by.host.end(), '\0'));
-    throw Failure(
-        Exit::outside,
-        fmt::format(
-            "{}: busy: {} uploads a program, and has the line since {} s; try again in some "
-            "seconds, or take it with rsc upload --take",
-            transport_.name(), host, by.since_ms / 1000));
+    throw Failure(Exit::outside,
+                  fmt::format("{}: busy: {} is uploading a program, and has had the line for {} s; "
+                              "try again in a few seconds, or take it with rsc upload --take",
+                              transport_.name(), host, by.since_ms / 1000));
   }
   tried = true;
   (void)hello();
@@ -288,7 +286,7 @@ void Client::pair(const link::Pair& owner) {
     if (said.pairing == link::Pairing::paired && said.key == owner.key) return orders_.learn(said);
     heed(said, give_up);
   }
-  throw Failure(Exit::outside, "the board does not write the key down: does its store work?");
+  throw Failure(Exit::outside, "the board does not store the key: does its store work?");
 }
 
 void Client::unpair() {
@@ -301,7 +299,7 @@ void Client::unpair() {
     heed(said, give_up);
   }
   throw Failure(Exit::outside,
-                "the board does not write down that it has no owner: does its store work?");
+                "the board does not record that it has no owner: does its store work?");
 }
 
 // What follows it needs no signature, so a lost line costs none.

@@ -152,8 +152,7 @@ std::unique_ptr<Transport> open_unix_socket(const std::string& path) {
   Descriptor file(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (file < 0) fail(name, errno);
   const int error = connect_to(file, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  if (error == ETIMEDOUT)
-    fail(name, "somebody listens there, and takes no more connections: is another rsc using it?");
+  if (error == ETIMEDOUT) fail(name, "it takes no more connections: is another rsc using it?");
   if (error != 0) {
     fail(name, fmt::format("{}; is the robot running? (`scripts/robot --socket {}`)",
                            std::strerror(error), path));

@@ -36,10 +36,9 @@ void check_board(const fs::path& file, const std::string& board) {
   std::string content = read_text(file);
   if (file.extension() == ".hex") content = content_of_hex(content);
   if (content.find(board) != std::string::npos) return;
-  throw Failure(Exit::outside,
-                fmt::format("{} is not the firmware of {}: its name does not stand in it; "
-                            "`scripts/firmware {}` makes one",
-                            file.string(), board, board));
+  throw Failure(Exit::outside, fmt::format("{} is not the firmware of {}: it does not contain that "
+                                           "name; `scripts/firmware {}` makes one",
+                                           file.string(), board, board));
 }
 
 std::optional<fs::path> with_ending(const fs::path& stem,
@@ -88,7 +87,7 @@ fs::path find_firmware(const std::string& file, const std::string& board,
             ? fmt::format("there is no {}{} here, in build/firmware or in {}: name the file, or "
                           "make it with `scripts/firmware {}`",
                           usual, endings.front(), installed_firmware().string(), board)
-            : fmt::format("{}: a file that ends in {} is needed, and none is beside it", file,
+            : fmt::format("{}: a {} file is needed, and there is none next to it", file,
                           endings.front()));
   }
   check_board(*found, board);

@@ -59,10 +59,11 @@ public:
   void run(Until until, Transport::Clock::time_point give_up) {
     while (!complete_ && (until == Until::there || next_ < image_.size())) {
       if (client_.now() >= give_up) {
-        throw Failure(Exit::outside,
-                      fmt::format("the transfer timed out after {} of {} bytes; the old program "
-                                  "goes on",
-                                  wanted_, image_.size()));
+        throw Failure(
+            Exit::outside,
+            fmt::format(
+                "the transfer timed out after {} of {} bytes; the old program keeps running",
+                wanted_, image_.size()));
       }
       const std::optional<Message> reply = client_.next_reply(kWindowTimeout);
       if (!reply) {
@@ -178,12 +179,10 @@ private:
 
   void take_begin(const link::TransferStatus& status, std::size_t assumed) {
     if (status.state == link::TransferState::too_large) {
-      throw Failure(
-          Exit::program,
-          fmt::format(
-              "beside the running program the board has {} bytes free, and the image has {}: "
-              "rsc upload --replace ends the running program first",
-              status.next_offset, image_.size()));
+      throw Failure(Exit::program,
+                    fmt::format("next to the running program the board has {} bytes free, and the "
+                                "image has {}: rsc upload --replace ends the running program first",
+                                status.next_offset, image_.size()));
     }
     if (status.state == link::TransferState::other_base) {
       forget_base();
@@ -278,8 +277,8 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
   }
   if (board.opcode_set != header.opcode_set) {
     found.push_back(
-        fmt::format("the firmware has another set of opcodes ({:04x}) than the image "
-                    "({:04x}): compile it again, or flash the firmware of this release",
+        fmt::format("the firmware has another opcode set ({:04x}) than the image ({:04x}): compile "
+                    "it again, or flash the firmware of this release",
                     board.opcode_set, header.opcode_set));
   }
   const policy::BoardMemory memory{board.arena_begin, board.arena_bytes, board.step_budget};
@@ -327,8 +326,9 @@ void check_result(const link::ActivateResult& result, const Program& program) {
   const vm::Verdict verdict{static_cast<vm::Refusal>(result.refusal),
                             static_cast<vm::Section>(result.section), result.index};
   const std::uint16_t line = source_line(program.image(), verdict.section, verdict.index);
-  throw Failure(Exit::program, fmt::format("the board refused the program: {}; the old one goes on",
-                                           describe_refusal(verdict, line)));
+  throw Failure(Exit::program,
+                fmt::format("the board refused the program: {}; the old one keeps running",
+                            describe_refusal(verdict, line)));
 }
 
 // No firmware has it: better said here than by the board, in fewer words.

@@ -142,7 +142,7 @@ void Watch::find_again() {
   try {
     session_ = open_session(place_);
     begin();
-    missed("the line is there again; what happened meanwhile is not shown");
+    missed("the line is back; what happened meanwhile is not shown");
     introduce();
   } catch (const Failure& failure) {
     if (failure.exit() != Exit::outside) throw;
@@ -195,7 +195,7 @@ void Watch::tell_threads() {
 // told each time.
 void Watch::look(const link::Status& status) {
   if (status.uptime_us < uptime_us_) {
-    missed("the board has started again");
+    missed("the board has restarted");
     lost_ = 0;
     learn_program();
     introduce();

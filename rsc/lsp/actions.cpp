@@ -27,7 +27,7 @@ std::string title_of(const Fix& fix, const SourceMap& sources) {
       fix.applicability == compiler::Applicability::placeholder ? ", to be filled in" : "";
   if (old.empty()) return fmt::format("Insert {}{}", shown(fix.replacement), gap);
   if (fix.replacement.empty()) return fmt::format("Remove {}", shown(old));
-  return fmt::format("Replace {} by {}{}", shown(old), shown(fix.replacement), gap);
+  return fmt::format("Replace {} with {}{}", shown(old), shown(fix.replacement), gap);
 }
 
 class ActionFinder {
@@ -47,7 +47,7 @@ public:
       for (const Checked* const checked : desk_.workspace.users_of(*path_))
         look(*checked);
     if (!all_.empty() && wants("source.fixAll"))
-      actions_.push_back({{"title", "Mend all that is certain"},
+      actions_.push_back({{"title", "Apply all certain fixes"},
                           {"kind", "source.fixAll"},
                           {"edit", {{"changes", all_}}}});
     return std::move(actions_);

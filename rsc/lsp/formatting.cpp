@@ -44,7 +44,7 @@ Json formatting(Desk desk, const Json& params) {
   // What is wrong is shown already.
   if (diagnostics.errors() > 0) return nullptr;
   const auto result = compiler::formatted(sources, file);
-  if (!result) throw Refusal("this text cannot be formatted without changing what it says");
+  if (!result) throw Refusal("this text cannot be formatted without changing its meaning");
   if (*result == document->source.text()) return Json::array();
   return Json::array({difference(document->source, *result, desk.workspace.encoding())});
 }

@@ -67,7 +67,7 @@ bool Server::take_back(const Json& message) {
   });
   if (found == queue_.end()) return true;
   queue_.erase(found);
-  send_error(id, error::request_cancelled, "the request was taken back");
+  send_error(id, error::request_cancelled, "the request was cancelled");
   return true;
 }
 

@@ -45,8 +45,8 @@ std::string compiler() {
 
 void run_compiler(const Command& command, const std::string& source, const char* for_what) {
   if (!is_installed(command.front()))
-    throw Failure(Exit::outside, fmt::format("there is no compiler {} to compile {} with",
-                                             command.front(), source));
+    throw Failure(Exit::outside,
+                  fmt::format("there is no compiler {} to compile {}", command.front(), source));
   if (run_program(command) != 0)
     throw Failure(Exit::program, fmt::format("{} does not compile{}", source, for_what));
 }
@@ -148,8 +148,7 @@ std::uint32_t count_instructions(const std::string& source, const Try& one,
        "-monitor", "none", "-serial", "none", "-chardev", "file,id=said,path=" + out.string(),
        "-semihosting-config", "enable=on,target=native,chardev=said", "-kernel", elf.string()});
   if (exit != 0)
-    throw Failure(Exit::program,
-                  fmt::format("{} does not come to an end on an emulated Cortex-M4", source));
+    throw Failure(Exit::program, fmt::format("{} does not end on an emulated Cortex-M4", source));
   return static_cast<std::uint32_t>(std::strtoul(read_text(out).c_str(), nullptr, 10));
 }
 

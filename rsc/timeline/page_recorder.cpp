@@ -34,7 +34,7 @@ void PageRecorder::event(const link::Event& event, const TraceNames& names) {
 
 void PageRecorder::write(const std::string& file, const std::string& title) {
   if (!timeline_)
-    throw Failure(Exit::program, "nothing has happened that a page could show; none was written");
+    throw Failure(Exit::program, "nothing happened that a page could show; none was written");
   const std::vector<std::string> none;
   const auto& lines = names_.origin == nullptr ? none : names_.origin->lines;
   const std::string page = timeline_page(title, timeline_->finish(end_us_), lines);

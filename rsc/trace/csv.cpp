@@ -66,7 +66,7 @@ private:
   }
 
   [[noreturn]] void bad_quote() const {
-    fail(row_.line, "a quote has no other, or stands inside a cell; write it twice there");
+    fail(row_.line, "a quote is not closed, or is inside a cell; double it there");
   }
 
   void check() const {

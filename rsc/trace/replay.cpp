@@ -94,7 +94,7 @@ std::vector<std::byte> with_plain_channels(const Program& program,
 // A reading as the trace has it: a label, or a number in the canonical unit.
 vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& value) {
   if (value.is_string()) return parse_reading(image, channel, value.get<std::string>());
-  if (!value.is_number()) throw std::invalid_argument("its value is no number");
+  if (!value.is_number()) throw std::invalid_argument("its value is not a number");
   const double thousandths = std::round(value.get<double>() * vm::kScale);
   if (std::abs(thousandths) > vm::kValueMax) throw std::invalid_argument("its value is too large");
   return static_cast<vm::Value>(thousandths);
@@ -135,7 +135,7 @@ Readings readings_of(const RecordedProgram& recorded, const vm::Image& image,
         told.value = value_of(image, told.channel, event.value("value", Json(nullptr)));
       readings.push_back(told);
     } catch (const std::exception& error) {
-      throw Failure(Exit::program, fmt::format("{}:{}: this reading is not of the program: {}",
+      throw Failure(Exit::program, fmt::format("{}:{}: this reading does not fit the program: {}",
                                                file, line, error.what()));
     }
   }
@@ -335,7 +335,7 @@ std::vector<std::string> unrecorded(const RecordedProgram& recorded, const vm::I
 
 Replayed replay(const RecordedProgram& recorded, const std::string& file,
                 std::span<const std::byte> in_its_place) {
-  const std::string name = fmt::format("{}:{}: the program that begins here", file, recorded.line);
+  const std::string name = fmt::format("{}:{}: the program that starts here", file, recorded.line);
   if (time_of(recorded.events.back().event) > kLongestUs)
     throw Failure(Exit::program, name + " ran for longer than a day, which is too long to replay");
   const bool is_other = !in_its_place.empty();

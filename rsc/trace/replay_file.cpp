@@ -25,7 +25,7 @@ std::vector<std::byte> bytes_of(const std::string& hex, const std::string& file,
     std::uint8_t byte = 0;
     const char* const at = hex.data() + i;
     if (i + 2 > hex.size() || std::from_chars(at, at + 2, byte, kHex).ptr != at + 2)
-      throw Failure(Exit::program, fmt::format("{}:{}: this is no image", file, line));
+      throw Failure(Exit::program, fmt::format("{}:{}: this is not an image", file, line));
     bytes.push_back(std::byte{byte});
   }
   return bytes;

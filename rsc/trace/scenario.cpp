@@ -141,9 +141,10 @@ private:
   // Once for each channel.
   void note(std::string_view file, std::size_t line, const std::string& channel) {
     if (!unread_.insert(channel).second) return;
-    scenario_.notes.push_back(fmt::format(
-        "{}:{}: note: the program does not read {}, so what the scenario says of it does nothing",
-        file, line, channel));
+    scenario_.notes.push_back(
+        fmt::format("{}:{}: note: the program does not read {}, so what the scenario says about it "
+                    "has no effect",
+                    file, line, channel));
   }
 
   void read_stimuli(json_t* stimuli) {
@@ -202,10 +203,9 @@ private:
     };
     const vm::Value first = end(0), last = end(1);
     if (first != last && image_.channels[*channel].label_count > 0)
-      fail(line_of_key("ramp"),
-           fmt::format("{} has words, and there is nothing between two words: write a stimulus "
-                       "with `at` and `value` for each",
-                       image_.string(image_.channels[*channel].name)));
+      fail(line_of_key("ramp"), fmt::format("{} has words, and nothing lies between two words: "
+                                            "write a stimulus with `at` and `value` for each",
+                                            image_.string(image_.channels[*channel].name)));
     add_ramp(from, to, *channel, first, last);
   }
 
@@ -293,8 +293,8 @@ private:
           is_time ? Column{{}, unit} : read_column(file, table.columns.line, sensor, name, unit);
       if (is_time ? time_column < table.columns.cells.size() : is_among(columns, column))
         scenario_.notes.push_back(
-            fmt::format("{}:{}: note: two columns are called `{}`: of each row the last one counts",
-                        file, table.columns.line, name));
+            fmt::format("{}:{}: note: two columns are called `{}`; the last one counts", file,
+                        table.columns.line, name));
       if (is_time) time_column = columns.size();
       columns.push_back(column);
     }
@@ -408,7 +408,7 @@ Scenario ScenarioReader::read() {
       json_loadb(text_.data(), text_.size(), JSON_REJECT_DUPLICATES, &error));
   if (!root)
     fail(static_cast<std::size_t>(std::max(error.line, 1)),
-         fmt::format("this is no JSON, at column {}: {}", error.column, error.text));
+         fmt::format("this is not JSON, at column {}: {}", error.column, error.text));
   element_ = {0, text_.size()};
   if (!json_is_object(root.get())) fail(1, "a scenario is an object: {\"stimuli\": […]}");
   check_keys(root.get(), {"$schema", "duration", "stimuli"});

@@ -84,13 +84,13 @@ std::vector<drivers::Heard> hear_file(const std::string& file) {
       library.open_(file.c_str(), SFM_READ, &format), library.close_);
   if (!sound)
     throw Failure(Exit::program,
-                  fmt::format("{}: it is no sound: {}", file, library.strerror_(nullptr)));
+                  fmt::format("{}: it is not a sound file: {}", file, library.strerror_(nullptr)));
   if (format.samplerate < static_cast<int>(drivers::kEarRate))
     throw Failure(Exit::program,
-                  fmt::format("{}: it has {} samples a second; it takes {} to hear something", file,
+                  fmt::format("{}: it has {} samples a second; at least {} are needed", file,
                               format.samplerate, drivers::kEarRate));
   if (format.frames / format.samplerate > sf_count_t{3600} * kLongestHours)
-    throw Failure(Exit::program, fmt::format("{}: it lasts for more than an hour", file));
+    throw Failure(Exit::program, fmt::format("{}: it is longer than an hour", file));
   const std::vector<std::int16_t> samples = read_samples(library, sound.get(), format);
   std::vector<drivers::Heard> heard;
   drivers::Ear ear;

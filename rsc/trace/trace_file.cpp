@@ -48,7 +48,7 @@ public:
     }
     if (const auto time = line.event.find("t_us"); time != line.event.end()) {
       if (!time->is_number_unsigned() || time->get<std::uint64_t>() > kLatestUs - begin_us_)
-        fail(file_, line.number, "`t_us` is no program time");
+        fail(file_, line.number, "`t_us` is not a program time");
       at_us_ = std::max(at_us_, begin_us_ + time->get<std::uint64_t>());
       has_begun_ = true;
     }
@@ -85,18 +85,18 @@ void read_trace(const std::string& file, const std::function<void(const TraceLin
     const bool is_cut = stream.eof();  // every whole line has its end
     line.event = Json::parse(text, nullptr, false);
     if (is_cut && line.event.is_discarded()) {
-      std::cerr << fmt::format("note: {}:{}: this line was cut, and is left out\n", file,
+      std::cerr << fmt::format("note: {}:{}: this line is incomplete, and is left out\n", file,
                                line.number);
       return;
     }
     if (!line.event.is_object() || !line.event.contains("event") ||
         !line.event["event"].is_string())
-      fail(file, line.number, "this is no line of a trace");
+      fail(file, line.number, "this is not a line of a trace");
     counting.place(line);
     see(line);
   }
   if (stream.bad() || line.number == 0)
-    throw Failure(Exit::outside, fmt::format("{}: there is nothing to read in it", file));
+    throw Failure(Exit::outside, fmt::format("{}: it is empty, or cannot be read", file));
 }
 
 }  // namespace robosync::tool

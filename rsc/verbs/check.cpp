@@ -138,7 +138,7 @@ void add_check(Options& options) {
                     Options::Need::required);
   options.flag("--timing", asked->timing,
                "show what a step costs, rule by rule, and the memory it takes");
-  options.flag("--anyway", asked->anyway, "also when it is too much for the board of robot.json");
+  options.flag("--anyway", asked->anyway, "even if it is too much for the board in robot.json");
   add_compile_options(options, asked->how);
   options.choice(
       "--format", {"human", "json", "sarif"},

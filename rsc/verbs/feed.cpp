@@ -74,7 +74,7 @@ std::string describe(link::FeedError error, const vm::Image& image, const Stimul
     case link::FeedError::not_virtual:
       return fmt::format("{} is measured by the board; only virtual sensors can be fed", name);
     case link::FeedError::queue_full:
-      return "too many readings wait for their time on the board";
+      return "too many readings are waiting on the board";
     case link::FeedError::in_the_past:
       return fmt::format("the program is already past {} ms", stimulus.at_us / 1000);
   }
@@ -108,14 +108,14 @@ public:
     if (!hand_over(stimulus))
       throw Failure(Exit::program,
                     describe(link::FeedError::in_the_past, image_, stimulus) +
-                        ": --at is a time of the program; without it they are for now");
+                        ": --at is a program time; without it the readings are for now");
   }
 
   void note_late() const {
     if (late_ == 0) return;
     std::cerr << fmt::format(
-        "note: {} reading{} of the first moments came a little later than due, as soon as the line "
-        "took {}\n",
+        "note: {} reading{} due right at the start came a little late, as soon as the line took "
+        "{}\n",
         late_, late_ == 1 ? "" : "s", late_ == 1 ? "it" : "them");
   }
 
@@ -272,15 +272,14 @@ void add_feed(Options& options) {
   add_key_option(options, asked->key);
   add_duration_option(options, "--at", asked->at, "program time of the readings; else now");
   options.option("--scenario", "S.json", asked->scenario,
-                 "readings with their times: of the program with --upload, else from now");
+                 "readings with their times: program time with --upload, else from now");
   options.option("--upload", "FILE", asked->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does");
-  options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers begin as the program says");
+  options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers start as the program says");
   add_compile_options(options, asked->how);
   add_duration_option(options, "--watch", asked->watch,
-                      "show what happens, until so long after the last reading is due");
-  options.option("--record", "R.jsonl", asked->record,
-                 "with --watch: write it down for rsc replay");
+                      "show what happens until this long after the last reading is due");
+  options.option("--record", "R.jsonl", asked->record, "with --watch: record it for rsc replay");
   add_format_option(options, asked->format);
   options.runs([asked] { feed(*asked); });
 }

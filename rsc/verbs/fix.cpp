@@ -57,7 +57,7 @@ public:
       result = compile_file(file_, options_.how, texts_);
     texts_.write();
     std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
-    std::cout << fmt::format("{}: {} mended; {}\n", file_, mended_, summary(result.diagnostics));
+    std::cout << fmt::format("{}: {} fixed; {}\n", file_, mended_, summary(result.diagnostics));
     if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
   }
 
@@ -136,9 +136,9 @@ void fix(const FixOptions& options) {
 void add_fix(Options& options) {
   auto asked = std::make_shared<FixOptions>();
   options.arguments("FILE", asked->files,
-                    "programs (.rsl), which are written again, as is their robot.json",
+                    "programs (.rsl); they and their robot.json are rewritten",
                     Options::Need::required);
-  options.flag("--likely", asked->likely, "ask about the mends that are likely, too");
+  options.flag("--likely", asked->likely, "also ask about fixes that are likely");
   add_compile_options(options, asked->how);
   options.runs([asked] { fix(*asked); });
 }

@@ -142,7 +142,7 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   std::cout << "reset     " << keeping_text(kept) << '\n';
   if (kept.given_up_hash != link::ProgramHash{})
     std::cout << fmt::format(
-        "given up  program {}: in its trial a thread of it faulted, or a SAFETY rule tripped\n",
+        "given up  program {}: in its trial one of its threads faulted, or a SAFETY rule tripped\n",
         text_of(kept.given_up_hash));
   if (kept.state != link::Keeping::no_store)
     std::cout << "rollback  " << rollback_text(kept) << '\n';

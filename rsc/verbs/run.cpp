@@ -65,7 +65,7 @@ void note_what_is_late(const RunOptions& options, const Scenario& scenario, std:
   const auto count = scenario.stimuli.end() - late;
   if (options.duration || count == 0) return;
   std::cerr << fmt::format(
-      "{}: note: the run ends at {}: {} of {} readings come later and do nothing\n",
+      "{}: note: the run ends at {}: {} of {} readings come later and have no effect\n",
       options.scenario, seconds_text(end_us), count, scenario.stimuli.size());
 }
 
@@ -162,7 +162,7 @@ void run(const RunOptions& options) {
 bool waits_until_saved(SavedFiles& saved) {
   constexpr std::chrono::milliseconds kBetweenLooks{100};
   const Interruptible waiting;
-  std::cerr << "rsc: waits until a file is saved; Ctrl-C ends it\n";
+  std::cerr << "rsc: waiting until a file is saved; Ctrl-C ends it\n";
   while (!Interruptible::interrupted()) {
     if (saved.changed()) return true;
     std::this_thread::sleep_for(kBetweenLooks);
@@ -193,20 +193,19 @@ void run_again_and_again(const RunOptions& options) {
 void add_run(Options& options) {
   auto asked = std::make_shared<RunOptions>();
   options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
-  options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
+  options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, and when");
   add_duration_option(options, "--duration", asked->duration,
-                      "else the scenario's, else 10s or to its last reading");
+                      "how long; else the scenario's, else 10s or to its last reading");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
-  options.option("--record", "R.jsonl", asked->record, "write it down for rsc replay");
-  options.option("--html", "OUT.html", asked->html,
-                 "write a page that shows the run, for a browser");
+  options.option("--record", "R.jsonl", asked->record, "record it for rsc replay");
+  options.option("--html", "OUT.html", asked->html, "write a web page that shows the run");
   options.flag("--watch", asked->watch,
                "run again whenever the program, its configuration or the "
                "scenario is saved");
-  options.flag("--all", asked->all, "show readings and what happens inside as well");
+  options.flag("--all", asked->all, "also show readings and what happens inside");
   options.option("--kept", "K.json", asked->kept,
-                 "keeps the KEPT numbers; else STEM.kept.json beside the program");
-  options.flag("--fresh", asked->fresh, "KEPT numbers begin as the program says");
+                 "file of the KEPT numbers; else STEM.kept.json beside the program");
+  options.flag("--fresh", asked->fresh, "KEPT numbers start as the program says");
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);

@@ -21,9 +21,8 @@ void stop_board(const std::string& port) {
   } catch (const Failure& failure) {
     throw Failure(failure.exit(),
                   std::string(failure.what()) +
-                      " It may have stopped all the same: a board with much to do stops first, and "
-                      "answers when it finds the time; and another rsc on this line may have taken "
-                      "the answer");
+                      " It may have stopped all the same: a busy board stops first and answers "
+                      "later, and another rsc on this line may have taken the answer");
   }
 }
 

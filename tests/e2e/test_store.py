@@ -212,7 +212,7 @@ class Trial(Switched):
             self.assertLess(first.stat().st_size, LARGEST_SOON)
             self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
         said = self.upload(second)
-        self.assertRegex(said, r"kept in [45]\.\d s if it stands its trial; after a reset before then, the robot starts with")
+        self.assertRegex(said, r"kept in [45]\.\d s if it passes its trial; after a reset before then, the robot starts with")
         self.assertNotEqual(self.running(), kept)
         self.power_cycle()  # in its trial
         self.await_kept("kept")
@@ -224,8 +224,8 @@ class Trial(Switched):
         said = self.upload(second, "--no-confirm", "--trial", "300ms")
         self.assertIn("not kept: its trial is over; the program kept before runs again", said)
         self.assertEqual(self.running(), kept)
-        self.assertIn("only tried: in ", self.upload(second, "--no-confirm"))
-        self.assertIn("only tried: in ", rsc.run("info", "--port", self.board.port))
+        self.assertIn("only on trial: the kept program comes back in ", self.upload(second, "--no-confirm"))
+        self.assertIn("only on trial: the kept program comes back in ", rsc.run("info", "--port", self.board.port))
 
     def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):
         kept = self.keep(self.compile(PROGRAMS / "priorities.rsl"))
@@ -251,7 +251,7 @@ class Trial(Switched):
 class NoStore(RobotTest):
     def test_it_says_so(self):
         said = self.upload(self.compile(PROGRAMS / "priorities.rsl"))
-        self.assertIn("not kept: this board has no store", said)
+        self.assertIn("not kept: this board has no working store", said)
         done = rsc.call("rollback", "--port", self.board.port)
         self.assertEqual(done.returncode, 1)
         self.assertIn("this board keeps no programs", done.stderr)
