@@ -1,4 +1,4 @@
-// By the functions that the board itself and `rsc check --timing` use.
+// Uses the same functions as the board and `rsc check --timing`.
 #include "rsc/judge.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void judge_memory(const vm::Image& image, const policy::BoardMemory& board,
       .helps("leave out what takes most, or name a board with more memory in robot.json (`board`)");
 }
 
-// Shows the rules that cost most in a step, the first one as the place of the mistake.
+// Labels the rules that cost most in a step; the first one is the primary label.
 void label_rules(Diagnostic& report, const vm::Image& image,
                  const std::vector<compiler::Span>& places) {
   bool primary = true;
@@ -90,8 +90,8 @@ Overload overload_of_bus(const vm::Image& image, const analysis::BusLoad& load) 
   return overload;
 }
 
-// Shows what robot.json says of its sensors, the one that takes most as the place of the mistake. A display and a servo chip are
-// none of those.
+// Labels the bus's sensors in robot.json; the one that takes most is the primary label. Displays and servo chips are not among
+// them.
 void label_sensors(Diagnostic& report, const vm::Image& image, const analysis::BusLoad& load,
                    const std::vector<compiler::SensorConfig>& sensors) {
   const auto most = std::ranges::max(load.shares, {}, &analysis::BusLoad::Share::us);

@@ -28,7 +28,7 @@ constexpr std::size_t kNotInImage = static_cast<std::size_t>(-1);
   throw Failure(Exit::outside, fmt::format("{}: {}; nothing was changed", file, message));
 }
 
-// The entries of a file that this has written, or a person in its place.
+// The entries of a file written by rsc, or by hand.
 Json entries_of(const std::string& text, const std::string& file) {
   const Json whole = Json::parse(text, nullptr, false);
   const bool good =
@@ -104,7 +104,7 @@ const compiler::Unit* Kept::unit_of(std::size_t variable) const {
   return written == units.end() ? nullptr : written->second;
 }
 
-// In the unit of the program, if that says it exactly.
+// In the program's unit, if that is exact.
 std::string Kept::shown(std::size_t variable, vm::Value value) const {
   const vm::Variable& record = program_.image().variables[variable];
   if (const compiler::Unit* const unit = unit_of(variable); unit != nullptr) {
@@ -114,7 +114,7 @@ std::string Kept::shown(std::size_t variable, vm::Value value) const {
   return format_quantity(value, record.dimension);
 }
 
-// Its name in the file, which may be in another case there.
+// Its name as written in the file, where the case may differ.
 std::string Kept::entry_of(std::size_t variable) const {
   for (const auto& [entry, value] : entries_.items())
     if (find_kept(program_.image(), entry) == variable) return entry;

@@ -1,4 +1,4 @@
-// rsc(1), made from what `rsc help` shows.
+// rsc(1), generated from the same texts as `rsc help`.
 #include <string>
 #include <string_view>
 
@@ -10,7 +10,7 @@
 namespace robosync::tool {
 namespace {
 
-// A minus that may be copied, and no line that roff takes for a request.
+// A minus that can be copied, and no line that roff reads as a request.
 std::string in_roff(std::string_view text) {
   const bool request = text.starts_with('.') || text.starts_with('\'');
   return (request ? "\\&" : "") + escaped(text, {{'\\', "\\e"}, {'-', "\\-"}});

@@ -1,4 +1,4 @@
-// The compiler's units (compiler/config/units.def) are the only ones.
+// Uses the compiler's units (compiler/config/units.def).
 #include "rsc/quantity.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-// "; write it as 20cm" for a number alone whose unit is certain: its own, or the only one that there is. Else the units
-// that fit, and no number: 20 may have been meant in any of them.
+// "; write it as 20cm" for a bare number whose unit is certain: its own, or the only one possible. Else the units that
+// fit, without the number: 20 could be in any of them.
 std::string way_out(std::string_view number, vm::Dimension dimension, std::string_view own) {
   std::vector<std::string_view> fitting;
   for (const compiler::Unit& unit : compiler::units())

@@ -1,4 +1,4 @@
-// Response times as a table for people, as JSON for programs, and as the reason of a refusal.
+// Response times as a table, as JSON, and as the reason for a refusal.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -42,7 +42,7 @@ std::string share_text(const PathTiming& path, const ResponseTime& response) {
   return fmt::format("{:>8.1f} %", kPercent * path.share(response));
 }
 
-// Where a WAIT is the reason, no sensor is.
+// If a WAIT is the cause, sensors are not.
 std::string mend_of(const ResponseReport& report) {
   if (report.short_wait == analysis::TaskSet::kNoWait)
     return "give a sensor a lower rate in robot.json, let rules run less often or fewer read it, "
@@ -107,7 +107,7 @@ Json response_json(const ResponseReport& report) {
   return object;
 }
 
-// The processor as a whole, or else the first path that is late; a sensor's other paths are as late.
+// The processor as a whole, or else the first late path; a sensor's other paths are just as late.
 Overload overload_of(const ResponseReport& report) {
   if (report.schedulable()) return {};
   Overload overload;

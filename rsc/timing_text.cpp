@@ -1,4 +1,4 @@
-// The timing as a table for people, and as JSON for programs: the same figures.
+// The timing as a table and as JSON, with the same figures.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

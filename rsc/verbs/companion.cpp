@@ -45,7 +45,7 @@ void list(const CompanionOptions& options) {
   }
 }
 
-// Of robot.json, the algorithms that run here.
+// The algorithms of robot.json that run here.
 std::vector<compiler::SensorConfig> algorithms_of(const std::string& config) {
   std::vector<compiler::SensorConfig> found = companion_algorithms(config, true);
   if (found.empty())
@@ -55,7 +55,7 @@ std::vector<compiler::SensorConfig> algorithms_of(const std::string& config) {
   return found;
 }
 
-// A path that is not there is a mistake; other names are for ALSA, or number a camera.
+// A path that does not exist is an error; other names are ALSA's, or the number of a camera.
 void check_source(const std::string& source) {
   std::error_code error;
   if (source.find('/') != std::string::npos && !std::filesystem::exists(source, error))

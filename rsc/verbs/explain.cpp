@@ -34,7 +34,7 @@ struct ExplainOptions {
   Format format = Format::human;
 };
 
-// E0301, w0203: a letter and four digits. A file would have a dot or a folder in its name.
+// E0301, w0203: a letter and four digits. A file name would have a dot or a folder.
 bool looks_like_code(const std::string& what) {
   constexpr std::size_t kLength = 5;
   return what.size() == kLength && std::string_view("EWNewn").find(what[0]) != std::string::npos &&
@@ -68,8 +68,8 @@ void explain_code(const ExplainOptions& options) {
   std::cout << report.dump() << '\n';
 }
 
-// The configuration only says which actuators belong together, so a program can do without one;
-// what is wrong with it is for `rsc check`.
+// The configuration only says which actuators belong together, so it is optional; its errors are
+// left to `rsc check`.
 std::optional<compiler::Robot> robot_for(const ExplainOptions& options,
                                          compiler::SourceMap& sources) {
   std::filesystem::path path;

@@ -46,7 +46,7 @@ Board board_called(const std::string& name) {
                                               : fmt::format("boards: {}", fmt::join(names, ", "))));
 }
 
-// An emulated one is not programmed.
+// Emulated boards are not flashed.
 std::string boards_to_flash() {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
@@ -74,7 +74,7 @@ void copy_to(const fs::path& drive, const FlashOptions& options, const Board& bo
   say_what_next(board);
 }
 
-// A word of openocd's own commands: one that it takes as it is.
+// Quotes a word for openocd's command language.
 std::string braced(const fs::path& file) {
   return "{" + fs::absolute(file).string() + "}";
 }

@@ -27,7 +27,7 @@ struct FormatOptions {
   bool check = false;
 };
 
-// What the text would be; nothing when something is wrong with it, which has been said then.
+// The formatted text; nothing if it has errors, which are printed.
 std::optional<std::string> formatted(const std::string& name, const std::string& text) {
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
@@ -56,7 +56,7 @@ bool format_file(const std::string& name, bool check) {
   return !check;
 }
 
-// Reads stdin and writes stdout, as editors want it.
+// Reads stdin and writes stdout, for editors.
 bool format_stdin() {
   const std::string text = read_text("/dev/stdin");
   const std::optional<std::string> result = formatted("<stdin>", text);

@@ -30,7 +30,7 @@ void print(const Finding& finding) {
   std::cout << std::flush;
 }
 
-// Of a compiled module it is the C file beside it.
+// For a compiled module, the C file next to it.
 std::optional<std::string> source_of(const std::string& file) {
   const fs::path source = fs::path(file).replace_extension(".c");
   std::error_code error;
@@ -38,7 +38,7 @@ std::optional<std::string> source_of(const std::string& file) {
   return source.string();
 }
 
-// With the usual parameters, the least and the most: the first three of its configurations.
+// With the default, the lowest and the highest parameters: the first three configurations.
 Finding try_cost(const std::string& source, const std::string& file, const WorkFolder& folder) {
   constexpr std::size_t kConfigs = 3, kPeriods = 3;
   const module_files::Loaded loaded = module_files::load(file);
@@ -62,7 +62,7 @@ Finding try_cost(const std::string& source, const std::string& file, const WorkF
           ""};
 }
 
-// Messages show the one, robot.json names the other.
+// Messages show its own name, robot.json uses the file name.
 void note_another_name(const std::string& file) {
   const std::string named = fs::path(file).stem().string();
   const robosync_description* const description = module_files::load(file).description;
@@ -72,7 +72,7 @@ void note_another_name(const std::string& file) {
         description->name, named);
 }
 
-// True when all is kept.
+// True if the module keeps every promise.
 bool check(const std::string& file, const std::optional<std::string>& source,
            const WorkFolder& folder) {
   bool fine = true;

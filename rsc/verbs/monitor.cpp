@@ -31,7 +31,7 @@ struct MonitorOptions {
   bool plain = false;
 };
 
-// On a terminal the whole screen; else lines.
+// The full screen on a terminal, else lines.
 std::unique_ptr<Viewer> view_of(const MonitorOptions& options) {
   if (!options.plain && options.format == Format::human)
     if (auto terminal = screen::Terminal::open())

@@ -61,7 +61,7 @@ void make_folder(const fs::path& folder) {
                   fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
 }
 
-// All of it, or nothing: what was written goes again where the rest cannot be.
+// All or nothing: if a file cannot be written, the others are removed.
 void write_files(const fs::path& folder, const NewFiles& files) {
   std::error_code error;
   const bool is_new = !fs::exists(folder, error);
@@ -88,7 +88,7 @@ std::string_view purpose_of(const TemplateFile& file, const Template& robot) {
   return file.name == robot.scenario ? "what happens to it in `rsc run`" : "recorded readings";
 }
 
-// As a shell reads it as one name.
+// Quoted so that a shell reads it as one word.
 std::string in_shell(const std::string& folder) {
   constexpr const char* kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+,:@%-";
@@ -119,7 +119,7 @@ void make_robot(const NewOptions& options) {
 
 // --- a module ---
 
-// Its functions begin with its name, and its file is called like it.
+// The module's name, which is also the prefix of its functions and its file name.
 std::string module_name(const std::string& folder) {
   std::string name = fs::absolute(folder).lexically_normal().filename().string();
   if (name.empty())

@@ -1,4 +1,4 @@
-// rsc pair --port P [--key FILE]: a person beside the robot makes a key its owner.
+// rsc pair --port P [--key FILE]: a person next to the robot makes a key its owner.
 #include <iostream>
 #include <memory>
 #include <string>

@@ -30,7 +30,7 @@ struct ReplayOptions {
   Format format = Format::human;
 };
 
-// A trace has no program in it, a recording has.
+// A recording contains its program, a trace does not.
 RecordedRun recording_of(const ReplayOptions& options) {
   RecordedRun run = read_recording(options.file);
   if (run.programs.empty())
@@ -46,7 +46,7 @@ RecordedRun recording_of(const ReplayOptions& options) {
   return run;
 }
 
-// That of --program runs in place of all that were recorded.
+// The image of --program, which runs instead of every recorded one.
 std::vector<std::byte> image_of(const ReplayOptions& options) {
   if (options.program.empty()) return {};
   return without_source_lines(load_program(options.program, options.how));

@@ -13,7 +13,7 @@ namespace robosync::tool {
 
 namespace {
 
-// Without a hello first, for which a board with much to do may need some time; and beside another rsc, such as a monitor.
+// Without a hello first, which a busy board may answer late; and while another rsc, such as a monitor, has the line.
 void stop_board(const std::string& port) {
   const std::unique_ptr<Transport> transport = open_port(port, Sharing::at_once);
   try {

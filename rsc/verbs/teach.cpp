@@ -25,7 +25,7 @@ struct TeachOptions {
   bool list = false;
 };
 
-// The words themselves are not read: there may be none yet, and who teaches them says what is wrong with them.
+// The words themselves are not read: there may be none yet, and the module's program reports errors in them.
 compiler::SensorConfig algorithm_of(const TeachOptions& options) {
   std::string known;
   for (const compiler::SensorConfig& sensor : companion_algorithms(options.config, false)) {
@@ -43,7 +43,7 @@ compiler::SensorConfig algorithm_of(const TeachOptions& options) {
                         options.name, known));
 }
 
-// What the program of the module is asked to do.
+// The arguments for the module's program.
 std::vector<std::string> task(const TeachOptions& options) {
   const bool teaches = !options.word.empty();
   if (teaches + options.list + !options.forget.empty() != 1)
@@ -64,7 +64,7 @@ std::vector<std::string> task(const TeachOptions& options) {
   return arguments;
 }
 
-// It goes on in the place of rsc: what it says, and its exit code, are those of rsc teach.
+// The program replaces rsc: its output and exit code are those of rsc teach.
 [[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments) {
   std::vector<char*> texts = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments)

@@ -1,4 +1,4 @@
-// rsc unpair --port P [--key FILE]: its owner gives a robot up.
+// rsc unpair --port P [--key FILE]: the owner gives the robot up.
 #include <iostream>
 #include <memory>
 #include <string>

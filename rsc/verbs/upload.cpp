@@ -47,9 +47,9 @@ void upload_to_one(const SendOptions& options, const Program& program) {
   expect_trial_stood(options, uploaded, program);
 }
 
-// Two threads would each take what the robot answers the other.
+// Otherwise two threads would each take replies meant for the other.
 void expect_different_lines(const std::vector<std::string>& ports) {
-  std::map<std::string, std::string> seen;  // as it was named, by line
+  std::map<std::string, std::string> seen;  // the name as given, by line
   for (const std::string& port : ports) {
     const auto [at, is_new] = seen.emplace(real_name_of(port), port);
     if (is_new) continue;
