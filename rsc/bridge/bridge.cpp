@@ -130,8 +130,8 @@ bool Bridge::work(Session* session) {
   return true;
 }
 
-// An earlier bridge may have left things of a program that runs no more, and of this one what nobody knows now. What is
-// published here comes behind all that.
+// An earlier bridge may have retained messages of another program, or outdated ones of this program. They are cleared;
+// this bridge's own messages arrive after them.
 void Bridge::see_what_was_left(const std::string& topic, const MqttMessage& message) {
   if (message.retained)
     mqtt_.clear(message.topic);
@@ -139,7 +139,7 @@ void Bridge::see_what_was_left(const std::string& topic, const MqttMessage& mess
     mqtt_.look_no_more();
 }
 
-// What lay there before would be obeyed at each start again.
+// Retained orders are refused: they would be obeyed again at each start.
 void Bridge::take(const MqttMessage& message, Session* session) {
   std::string topic = message.topic.substr(root_.size());
   if (!topic.starts_with(kDo)) return see_what_was_left(topic, message);

@@ -15,13 +15,13 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kShortestPause{500}, kLongestPause{30'000};
-constexpr milliseconds kLivesWell{30'000};  // after so long it is started again as soon as at first
-constexpr milliseconds kFirstWord{20'000};  // until it has read its model
+constexpr milliseconds kLivesWell{30'000};  // a run this long resets the pause
+constexpr milliseconds kFirstWord{20'000};  // time to load its model
 constexpr milliseconds kLeastPatience{3'000};
-constexpr int kPeriods = 5;     // so many without a word, and it hangs
-constexpr int kMostReads = 32;  // of what a pipe still holds after the end
+constexpr int kPeriods = 5;     // this many without a line, and it counts as hung
+constexpr int kMostReads = 32;  // reads of what the pipe still holds after the end
 
-// Did it end by itself, in this way?
+// Did it exit with this code?
 bool has_ended(int status, companion::Exit how) {
   return WIFEXITED(status) && WEXITSTATUS(status) == static_cast<int>(how);
 }
@@ -51,7 +51,7 @@ bool Worker::listen(const Accept& accept) {
   return means_something;
 }
 
-// What it has said is taken before it is judged: it may have waited in the pipe while nobody had time.
+// Its lines are read before it is judged: they may have waited in the pipe while rsc was busy.
 void Worker::look(Clock::time_point now, const Accept& accept) {
   if (is_over_ || is_given_up_ || (!process_ && now < next_start_)) return;
   if (!process_) start(now);

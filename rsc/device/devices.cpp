@@ -1,4 +1,4 @@
-// See devices.hpp. May assume nothing of what the board sends.
+// See devices.hpp. The board's data is not trusted.
 #include "rsc/device/devices.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A sensor is measured as soon as its program begins.
+// Sensors are measured as soon as the program starts.
 constexpr milliseconds kFirstRound{1000};
 
 bool has(std::uint32_t mask, std::size_t bit) {

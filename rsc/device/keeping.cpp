@@ -33,7 +33,7 @@ Json program(std::uint32_t bytes, const link::ProgramHash& hash) {
   return {{"hash", text_of(hash)}, {"bytes", bytes}};
 }
 
-// To which `rsc rollback` goes.
+// The program that `rsc rollback` returns to.
 struct Other {
   std::uint32_t bytes;  // 0: none
   const link::ProgramHash& hash;
@@ -103,12 +103,12 @@ std::string rollback_text(const link::Kept& kept) {
              : fmt::format("to program {} ({} bytes)", text_of(other.hash), other.bytes);
 }
 
-// The board says `kept` of what runs, which is the kept program then.
+// If the board reports `kept`, the kept program is the one that runs.
 bool has_gone_back(const link::Kept& kept, const link::ProgramHash& uploaded) {
   return kept.state == Keeping::kept && kept.kept_hash != uploaded;
 }
 
-// One that has failed before may run again, and stand it this time.
+// A program that failed its trial once may be uploaded again and pass.
 bool has_failed_trial(const link::Kept& kept, const link::ProgramHash& uploaded) {
   return kept.given_up_hash == uploaded && kept.state != Keeping::on_trial &&
          !(kept.state == Keeping::kept && kept.kept_hash == uploaded);

@@ -1,5 +1,5 @@
-// See owner_key.hpp. The file is one line of words, so that a person who finds it knows what it is, and one of 64 hexadecimal
-// digits, the seed of the key.
+// See owner_key.hpp. The file has a line of text, so that a person who finds it knows what it is, and a line of 64
+// hexadecimal digits, the seed of the key.
 #include "rsc/device/owner_key.hpp"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ private:
   int descriptor_;
 };
 
-// What is secret, and wiped.
+// Secret bytes, wiped after use.
 template <typename Element, std::size_t kCount>
 struct Wiped {
   Wiped() = default;
@@ -56,7 +56,7 @@ struct Wiped {
   Wiped& operator=(const Wiped&) = delete;
   std::array<Element, kCount> bytes{};
 };
-using Text = Wiped<char, kLength + 1>;  // of the file, and one more, so that a longer file is seen
+using Text = Wiped<char, kLength + 1>;  // of the file, and one more to detect a longer file
 using Seed = Wiped<unsigned char, crypto_sign_SEEDBYTES>;
 
 void make_folder(const fs::path& folder) {

@@ -94,12 +94,12 @@ private:
       }
     }
   }
-  // Two programs may find the same in a robot.json that they share.
+  // Two programs may report the same error in a shared robot.json.
   void offer(Json action) {
     if (std::ranges::find(actions_, action) == actions_.end())
       actions_.push_back(std::move(action));
   }
-  // What is not there may be in a module that is not used.
+  // An unknown name may be in a module that the program does not USE.
   void offer_module(const Checked& checked, const Diagnostic& diagnostic, const Finding& found) {
     const std::string_view module =
         diagnostic.unknown.empty() ? std::string_view() : compiler::module_with(diagnostic.unknown);
@@ -126,7 +126,7 @@ private:
     };
     return before(first, end_) && before(begin_, last);
   }
-  // Those that do not reach into one another.
+  // Only fixes that do not overlap.
   void add_to_all(Span span, const std::string& uri, const Json& edit) {
     const bool apart = std::ranges::none_of(
         taken_, [&](Span other) { return span.begin <= other.end && other.begin <= span.end; });

@@ -27,7 +27,7 @@ void write_text(const fs::path& path, std::string_view text) {
   write_output(path, std::as_bytes(std::span(text)));
 }
 
-// So that a module alone finds the interface, too; one that has it beside itself takes that.
+// Lets a lone module find the interface; a copy next to the module comes first.
 fs::path with_header(const WorkFolder& folder) {
   write_text(folder.path() / "robosync_module.h", module_header());
   return folder.path();
@@ -99,8 +99,8 @@ WorkFolder::~WorkFolder() {
   fs::remove_all(path_, ignored);
 }
 
-// Where arithmetic goes wrong it traps: gcc knows overflow, shifts, division and what lies beyond an array. A pointer to nothing is left to
-// the memory, which says better what was wrong.
+// Undefined arithmetic traps: overflow, shifts, division and array bounds. Null pointers are left to memory protection, which
+// gives a better message.
 std::string compile_for_here(const std::string& source, const WorkFolder& folder) {
   const fs::path library = folder.path() / fs::path(source).stem().concat(".so");
   run_compiler({compiler(), "-std=c11", "-O2", "-g", "-fPIC", "-shared", "-Wall", "-Wextra",
@@ -115,7 +115,8 @@ bool can_count() {
   return is_installed(kCrossCompiler) && is_installed(kEmulator) && is_installed("timeout");
 }
 
-// Without an FPU each operation is a call of the compiler's library, by a name of the ABI ("Run-time ABI for the Arm Architecture", 5.1.2).
+// Without an FPU each floating-point operation calls a library function with an ABI name ("Run-time ABI for the Arm
+// Architecture", 5.1.2).
 bool uses_floating_point(const std::string& source, const WorkFolder& folder) {
   const fs::path object = folder.path() / "without_fpu.o";
   run_compiler({kCrossCompiler, "-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=soft", "-Os", "-std=c11",

@@ -20,9 +20,9 @@ using module_files::Process;
 using module_files::Sizes;
 using module_files::State;
 
-constexpr std::size_t kSamples = 400;  // of each try
+constexpr std::size_t kSamples = 400;  // in each try
 
-// --- what it is tried with ---
+// --- inputs ---
 
 std::vector<Config> configs_for(const robosync_description& names) {
   const robosync_module& module = *names.module;
@@ -42,7 +42,7 @@ std::vector<Config> configs_for(const robosync_description& names) {
   return configs;
 }
 
-// A quarter each: noise of a few units, jumps between two levels, anything, and the ends of all numbers.
+// A quarter each: noise of a few units, jumps between two levels, random values, and the extremes of the number range.
 Inputs draw(std::mt19937& random, std::size_t place) {
   Inputs inputs{};
   for (std::int32_t& input : inputs) {
@@ -65,7 +65,7 @@ Inputs draw(std::mt19937& random, std::size_t place) {
   return inputs;
 }
 
-// --- what it promises ---
+// --- promises ---
 
 class Trial {
 public:
@@ -125,8 +125,7 @@ private:
     return "";
   }
 
-  // What it left at its outputs after each sample; nothing when it ended on the way. Of what is wrong with them the first thing is
-  // noted.
+  // Its outputs after each sample; nothing if it ended early. The first error in them is noted.
   std::optional<std::vector<Outputs>> run(Process& module, const Try& one,
                                           std::uint8_t scratch_holds) {
     std::vector<Outputs> left;
@@ -139,7 +138,7 @@ private:
       std::uint32_t changed = 0;
       if (!module.process(one.config, inputs, state, outputs, changed, scratch_holds))
         return std::nullopt;
-      if (changed == ROBOSYNC_FAILED) break;  // it may
+      if (changed == ROBOSYNC_FAILED) break;  // allowed
       left.push_back(outputs);
       const std::string wrong = mistake_in_outputs(before, outputs, changed);
       if (outputs_.empty() && !wrong.empty())
@@ -175,7 +174,7 @@ private:
     return "";
   }
 
-  // In another process, from last to first, with another scratch.
+  // In another process, from last to first, with different scratch content.
   std::string mistake_in_repeating() {
     Process other(file_);
     for (auto one = tries_.rbegin(); one != tries_.rend(); ++one) {
@@ -195,7 +194,7 @@ private:
   Process module_;
   module_files::Description description_;
   std::vector<Try> tries_;
-  std::string outputs_;  // what was wrong with them first
+  std::string outputs_;  // the first error in the outputs
   std::vector<Finding> findings_;
 };
 

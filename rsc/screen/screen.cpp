@@ -119,7 +119,7 @@ bool Screen::take_command(int key, Session* session) {
     case 'b':
       act(session, "the previous program runs again", [](Client& client) {
         roll_back(client);
-        client.set_trace(true);  // its hello has ended it
+        client.set_trace(true);  // the hello of roll_back() has switched it off
       });
       break;
     default:
@@ -168,8 +168,7 @@ void Screen::force(const std::string& reading, Session* session) {
   }
 }
 
-// What the board does not want is said. Who does not answer at all is the
-// watch's business.
+// A refusal by the board is shown. A board that does not answer is left to the watch.
 void Screen::act(Session* session, const std::string& done,
                  const std::function<void(Client&)>& what) {
   if (session == nullptr) {

@@ -11,8 +11,8 @@
 
 namespace robosync::tool {
 
-// When another rsc has had the line the same program may go on, and so does its
-// page.
+// After another rsc had the line, the same program may still be running; its page then
+// continues.
 void PageRecorder::program(const TraceNames& names, std::span<const std::byte> image) {
   const bool goes_on = program_ && std::ranges::equal(program_->bytes(), image);
   if (goes_on) return;

@@ -1,4 +1,4 @@
-// Read with libcsv, one line of the file at a time, so that each row knows its line.
+// Uses libcsv, one line of the file at a time, so that each row knows its line.
 #include "rsc/trace/csv.hpp"
 
 #include <algorithm>
@@ -81,7 +81,7 @@ private:
 
   const std::string& file_;
   csv_parser parser_{};
-  CsvRow row_;  // the row at hand
+  CsvRow row_;  // the current row
   CsvTable table_;
 };
 

@@ -1,4 +1,4 @@
-// Read with libsndfile. May assume nothing of the file.
+// Uses libsndfile. The file is not trusted.
 #include "rsc/trace/sound.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLongestHours = 1;
 
-// What is used of libsndfile, which brings half a dozen codecs with it.
+// The functions used of libsndfile, which depends on half a dozen codecs.
 struct SoundFiles {
 #define SOUND_FUNCTIONS(F) F(open) F(close) F(readf_double) F(strerror)
 #define FUNCTION(name) decltype(&sf_##name) name##_ = nullptr;
@@ -33,7 +33,7 @@ struct SoundFiles {
   }
 };
 
-// The mean of what falls into each sample of the ear: high tones that it could not tell from low ones are so softened.
+// The mean of the samples that fall into each sample of the ear; this weakens high tones that would alias.
 class Resampler {
 public:
   explicit Resampler(int rate) : rate_(rate) {}

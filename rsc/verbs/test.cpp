@@ -24,9 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kBefore =
-    500'000;  // how much of what led to a failure is shown, in microseconds
-constexpr std::size_t kTimelineEnds = 15;  // lines at each end of a long timeline
+constexpr std::uint64_t kBefore = 500'000;  // shown before a failure, in microseconds
+constexpr std::size_t kTimelineEnds = 15;   // lines at each end of a long timeline
 
 struct TestOptions {
   std::vector<std::string> files;
