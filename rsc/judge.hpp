@@ -6,8 +6,7 @@
 
 namespace robosync::tool {
 
-// For a program without errors: adds what the board that its robot.json names would
-// refuse.
+// For a program without errors: adds an error for whatever its board would refuse.
 void judge(compiler::Result& result, Judged judged);
 
 // Throws Failure (program) when the board cannot keep up with `program`, called `name`.

@@ -66,7 +66,7 @@ struct Timing {
 // The response times: a table, whole lines, and the same as JSON.
 [[nodiscard]] std::string response_text(const analysis::ResponseReport& report);
 [[nodiscard]] nlohmann::ordered_json response_json(const analysis::ResponseReport& report);
-// Why the board cannot keep up with a program: what is too much; then what costs most, and the mend.
+// Why the board cannot keep up with a program: what is too much, then what costs most, and how to fix it.
 struct Overload {
   std::string what;  // empty: it can
   std::vector<std::string> why;

@@ -48,7 +48,7 @@ struct Asked {
 };
 // Nothing if the text is not part of a program.
 [[nodiscard]] std::optional<Asked> asked_at(Desk desk, const Json& params);
-// The address in `textDocument`.
+// The URI in `textDocument`.
 [[nodiscard]] std::string address_in(const Json& params);
 
 }  // namespace robosync::tool::lsp

@@ -48,7 +48,7 @@ private:
   std::size_t at_ = 0;
   std::uint64_t now_us_ = 0;
   std::vector<vm::Value> channels_;   // by number in the image
-  std::vector<vm::Value> variables_;  // likewise
+  std::vector<vm::Value> variables_;  // also by number
 };
 
 }  // namespace robosync::tool

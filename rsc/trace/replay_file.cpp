@@ -85,7 +85,7 @@ private:
   std::vector<std::byte> image_;
   RecordedRun run_;
   bool is_open_ = false;  // the last program has no gap yet
-  // At the last `whole`; of the last of its programs.
+  // At the last `whole`: the number of programs, and of events of the last one.
   std::size_t whole_programs_ = 0, whole_events_ = 0;
 };
 

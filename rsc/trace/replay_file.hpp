@@ -34,12 +34,10 @@ struct RecordedProgram {
 
 struct RecordedRun {
   std::vector<RecordedProgram> programs;
-  std::size_t loose = 0;  // events before a beginning, or behind a gap: nobody
-                          // knows what led to them
+  std::size_t loose = 0;  // events before a program's start or after a gap: causes unknown
 };
 
-// Throws what read_trace() throws; Failure (program), with file and line, for an
-// invalid image.
+// Throws what read_trace() throws; Failure (program), with file and line, for an invalid image.
 [[nodiscard]] RecordedRun read_recording(const std::string& file);
 
 }  // namespace robosync::tool
