@@ -34,7 +34,7 @@ struct ExplainOptions {
   Format format = Format::human;
 };
 
-// E0301, w0203: a letter and four digits. A file would have a dot or a folder in its name.
+// E0301, w0203: a letter and four digits. A file name would have a dot or a folder.
 bool looks_like_code(const std::string& what) {
   constexpr std::size_t kLength = 5;
   return what.size() == kLength && std::string_view("EWNewn").find(what[0]) != std::string::npos &&

@@ -403,7 +403,7 @@ class Panel(DebuggedTest):
 class WithoutFlash(RobotTest):
     def test_a_flash_that_does_nothing_is_a_store_that_does_not_answer(self):
         said = self.upload(PROGRAMS / "priorities.rsl", "--config", self.for_board(PROGRAMS / "robot.json"), "--trial", "1s")
-        self.assertIn("not kept: this board has no store that answers; after a reset the robot has no program", said)
+        self.assertIn("not kept: this board has no working store; after a reset the robot has no program", said)
         told = rsc.info(self.board.port)
         self.assertEqual((told["kept"]["state"], told["status"]["faults"], told["status"]["safety_late_us"]), ("no_store", 0, 0))
         self.assertIsNotNone(told["board"]["program"])

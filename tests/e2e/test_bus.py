@@ -63,7 +63,7 @@ class Bus(DebuggedTest):
         warnings = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
         self.assertEqual(len(warnings), 1, done.stderr)
         self.assertRegex(warnings[0], r"^warning: ghost at address 0x33 on i2c bus 0 does not answer \(\d+ transfers? failed\): "
-                                      r"has it power, are both wires of the bus connected, is this its address\?$")
+                                      r"does it have power, are both wires of the bus connected, is this its address\?$")
         found = {device["sensor"]: device for device in self.buses()["devices"]}
         self.assertEqual((found["touch"]["answers"], found["touch"]["failed"]), (True, 0))
         self.assertEqual((found["ghost"]["answers"], found["ghost"]["bus"], found["ghost"]["address"]), (False, 0, "0x33"))

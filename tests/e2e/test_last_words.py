@@ -54,7 +54,7 @@ class LastWords(DebuggedTest):
         errors = reader.stop()
         # One line for each start: on a busy machine QEMU's clock jumps, and the watchdog resets the board, too.
         self.assertEqual({json.loads(line)["event"] for line in reader.lines}, {"board"})
-        self.assertEqual(errors.count("the board has started again"), len(reader.lines) - 1, errors)
+        self.assertEqual(errors.count("the board has restarted"), len(reader.lines) - 1, errors)
 
     def test_a_fault_of_the_safety_thread_is_told_after_the_reset(self):
         self.send_safety_to(NOWHERE)

@@ -73,7 +73,7 @@ class Monitor(RobotTest):
         for part in ("mps2-an386", "SENSORS", "BEHAVIOURS", "ACTUATORS", "SAFETY", "LOG", "q quit"):
             self.assertIn(part, screen)
         self.terminal.type("f")
-        self.wait_for("reading, as touch.LEVEL=2")
+        self.wait_for("reading, such as touch.LEVEL=2")
         self.terminal.type("touch.LEVEL=1", "Enter")
         self.wait_for(r"touch\.LEVEL +1 ")
         self.terminal.type("f", "nobody.LEVEL=1", "Enter")

@@ -63,8 +63,8 @@ class Owner(Switched):
         image = self.compile(PROGRAMS / "priorities.rsl")
         self.assertEqual(self.owner(), {"pairing": "unpaired", "key": None})
         said = rsc.run("monitor", "--port", self.board.port, "--duration", "50ms").splitlines()
-        self.assertIn("nobody: whoever has this line gives the robot orders, until `rsc pair`", said[1])
-        self.refused("there is no key: make one, rsc keygen", "pair")
+        self.assertIn("nobody: anyone on this line can give the robot orders, until `rsc pair`", said[1])
+        self.refused("there is no key: make one with rsc keygen", "pair")
 
         key = rsc.run("keygen").split(" is your key ")[1].split()[0]
         file = self.folder / "settings/robosync/key"
@@ -89,7 +89,7 @@ class Owner(Switched):
             done = rsc.call("pair", "--port", self.board.port)
             if done.returncode == 0:
                 return done.stdout
-            self.assertIn("in the first minute after it was switched on", done.stderr)
+            self.assertIn("in the first minute after it is switched on", done.stderr)
         return self.fail("never in time")
 
     def owner_and_stranger(self, image):
@@ -103,7 +103,7 @@ class Owner(Switched):
         rsc.run("keygen", *other)
         for arguments in (("upload", image), ("resume",), ("unpair",), ("feed", "touch.LEVEL=1")):
             self.refused("the robot's owner has the key", *arguments, *other)
-        self.refused("has an owner already", "pair", *other)
+        self.refused("already has an owner", "pair", *other)
         self.refused("there is no key", "resume", "--key", self.folder / "none")
         with wire.Line(self.board.port) as stranger:
             self.replay(stranger, line.heard)

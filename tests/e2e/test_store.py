@@ -224,7 +224,7 @@ class Trial(Switched):
             self.assertLess(first.stat().st_size, LARGEST_SOON)
             self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
         said = self.upload(second)
-        self.assertRegex(said, r"kept in [45]\.\d s if it stands its trial; after a reset before then, the robot starts with")
+        self.assertRegex(said, r"kept in [45]\.\d s if it passes its trial; after a reset before then, the robot starts with")
         self.assertNotEqual(self.running(), kept)
         self.power_cycle()  # in its trial
         self.await_kept("kept")
@@ -236,8 +236,8 @@ class Trial(Switched):
         said = self.upload(second, "--no-confirm", "--trial", "300ms")
         self.assertIn("not kept: its trial is over; the program kept before runs again", said)
         self.assertEqual(self.running(), kept)
-        self.assertIn("only tried: in ", self.upload(second, "--no-confirm"))
-        self.assertIn("only tried: in ", rsc.run("info", "--port", self.board.port))
+        self.assertIn("only on trial: the kept program comes back in ", self.upload(second, "--no-confirm"))
+        self.assertIn("only on trial: the kept program comes back in ", rsc.run("info", "--port", self.board.port))
 
     def test_feed_says_that_its_program_failed_its_trial(self):
         kept = self.keep(self.images()[0])
@@ -247,7 +247,7 @@ class Trial(Switched):
         fed = ("feed", "--upload", program, "--config", config, "--watch", "500ms", "--port", self.board.port)
         done = rsc.call(*fed, "touch.LEVEL=9")
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn(f"{program} did not stand its trial", done.stderr)
+        self.assertIn(f"{program} failed its trial", done.stderr)
         self.assertEqual(self.running(), kept)
         rsc.run(*fed, "touch.LEVEL=1")
         self.assertNotEqual(self.running(), kept)
@@ -276,7 +276,7 @@ class Trial(Switched):
 class NoStore(RobotTest):
     def test_it_says_so(self):
         said = self.upload(self.compile(PROGRAMS / "priorities.rsl"))
-        self.assertIn("not kept: this board has no store", said)
+        self.assertIn("not kept: this board has no working store", said)
         done = rsc.call("rollback", "--port", self.board.port)
         self.assertEqual(done.returncode, 1)
         self.assertIn("this board keeps no programs", done.stderr)

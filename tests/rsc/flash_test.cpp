@@ -63,7 +63,7 @@ TEST_CASE("flash copies the file that the board's drive takes, and says so") {
     CHECK(outcome.exit == 0);
     CHECK(computer.read("drive/robosync-" + kBoard + ".bin") == kFirmware);
     CHECK_THAT(outcome.out,
-               Contains(fmt::format("copies {} ({} bytes) to the drive {}", computer.bin,
+               Contains(fmt::format("copying {} ({} bytes) to the drive {}", computer.bin,
                                     kFirmware.size(), computer.path("drive"))) &&
                    Contains("rsc info"));
   }
@@ -141,7 +141,7 @@ TEST_CASE("flash says what to do when a tool fails, and when there is no board")
   CHECK_THAT(
       outcome.err,
       Contains(
-          "openocd ended with 1: is the board connected, by the USB socket marked ST-LINK (CN7)?"));
+          "openocd ended with 1: is the board connected by the USB socket marked ST-LINK (CN7)?"));
   CHECK_THAT(computer.flash({computer.hex, "--drive", computer.path("none")}).err,
              Contains("there is no such folder"));
 }
@@ -162,7 +162,7 @@ TEST_CASE("flash takes no firmware of another board, and no board that is none")
   CHECK_FALSE(computer.has("openocd.told"));
   CHECK_THAT(computer.flash({computer.path("none.hex")}).err, Contains("there is no such file"));
   const std::string alone = computer.write("alone.bin", kFirmware);
-  CHECK_THAT(computer.flash({alone}).err, Contains("ends in .elf is needed"));
+  CHECK_THAT(computer.flash({alone}).err, Contains("a .elf file is needed"));
   CHECK_THAT(computer.flash({}).err, Contains("scripts/firmware " + kBoard));
 
   Outcome outcome = test::rsc({"flash"});

@@ -426,7 +426,7 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
 
   // The stranger's rsc says why not; his stop works all the same.
   const auto foreign = [&](auto&& what) {
-    CHECK_THROWS_WITH(what(), Contains("name the file of the other one"));
+    CHECK_THROWS_WITH(what(), Contains("name the right file"));
   };
   foreign([&] { (void)stranger.feed({.channel = 0, .at_us = 0, .value = 2000}); });
   foreign([&] { stranger.clear(test::name_of(program)); });
@@ -512,14 +512,14 @@ TEST_CASE("a key that cannot be used is said to be so") {
   tool::Client client(robot);
   client.pair(owner_of(keys));
   client.use_key(keys.folder.path("none"));
-  CHECK_THROWS_WITH(client.resume(), Contains("there is no key: make one, rsc keygen"));
+  CHECK_THROWS_WITH(client.resume(), Contains("there is no key: make one with rsc keygen"));
   std::ofstream(keys.folder.path("text")) << "not a key\n";
   std::filesystem::permissions(keys.folder.path("text"), std::filesystem::perms::owner_read);
   client.use_key(keys.folder.path("text"));
-  CHECK_THROWS_WITH(client.resume(), Contains("no key that rsc keygen has made"));
+  CHECK_THROWS_WITH(client.resume(), Contains("not a key from rsc keygen"));
   std::filesystem::permissions(keys.file, std::filesystem::perms::group_read,
                                std::filesystem::perm_options::add);
   client.use_key(keys.file);
   CHECK_THROWS_WITH(client.resume(), Contains("chmod 600"));
-  CHECK_THROWS_WITH(OwnerKey::make(keys.file), Contains("there is a file already"));
+  CHECK_THROWS_WITH(OwnerKey::make(keys.file), Contains("the file already exists"));
 }

@@ -255,7 +255,7 @@ TEST_CASE(
     CHECK_THAT(tool::rollback_text(kept),
                Catch::StartsWith("to none: ") && Catch::Contains(tool::text_of(name_of(bad))));
     CHECK(tool::keeping_json(kept).at("rollback").is_null());
-    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("gone back automatically") &&
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("went back on its own") &&
                                                    Catch::Contains("upload the one you want"));
     client.roll_back(name_of(first));
     client.roll_back(name_of(bad));
@@ -368,7 +368,7 @@ TEST_CASE(
   tool::Client client(robot);
   CHECK(tool::has_failed_trial(client.kept(), name_of(bad)));
   CHECK(tool::keeping_text(client.kept(), name_of(bad)) ==
-        "not kept: it has not stood its trial; the program kept before runs again");
+        "not kept: it failed its trial; the program kept before runs again");
   run_on(robot, bad);
   CHECK(client.kept().given_up_hash == link::ProgramHash{});
   CHECK_FALSE(tool::has_failed_trial(client.kept(), name_of(bad)));
@@ -407,8 +407,8 @@ TEST_CASE("of a program that is only tried nobody says that it is kept") {
   options.confirm = false;
   REQUIRE(tool::upload(client, client.hello(), next.bytes(), options).activation.running == 1);
   const std::string meanwhile = tool::keeping_text(client.kept(), name_of(next));
-  CHECK(meanwhile.starts_with("only tried: in "));
-  CHECK(meanwhile.ends_with(" s the kept program comes back"));
+  CHECK(meanwhile.starts_with("only on trial: the kept program comes back in "));
+  CHECK(meanwhile.ends_with(" s"));
   CHECK(tool::keeping_text(client.kept()) == meanwhile);
   robot.run(2500);
   CHECK(tool::keeping_text(client.kept(), name_of(next)) ==
@@ -481,7 +481,7 @@ TEST_CASE("a kept program that is damaged gives way to the one before, or to non
     tool::Client client(robot);
     CHECK(client.hello().program_hash == name_of(first));
     CHECK(client.kept().kept_hash == name_of(first));
-    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("not whole"));
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("damaged"));
     CHECK(client.hello().program_hash == name_of(first));
   }
   CHECK(started(memory) == name_of(first));

@@ -53,8 +53,9 @@ TEST_CASE("while one host uploads, another one is told who has the line, and cha
     FAIL("the line was the other host's");
   } catch (const tool::Failure& failure) {
     CHECK(failure.exit() == tool::Exit::outside);
-    CHECK_THAT(failure.what(), Catch::Contains("busy: desk uploads a program, and has the line") &&
-                                   Catch::Contains("since 1 s") && Catch::Contains("--take"));
+    CHECK_THAT(failure.what(),
+               Catch::Contains("busy: desk is uploading a program, and has had the line") &&
+                   Catch::Contains("for 1 s") && Catch::Contains("--take"));
   }
   CHECK_THROWS_AS(second.resume(), tool::Failure);
   CHECK_THROWS_AS(second.feed({.channel = 0, .at_us = 0, .value = 1}), tool::Failure);
