@@ -1,4 +1,4 @@
-// Analog inputs: from counts to readings, what is known of one that does not answer, and who has a pin that may be an output, too.
+// Analog inputs: from counts to readings, one that does not answer, and the use of a pin that may be an output, too.
 #include <array>
 
 #include <catch2/catch.hpp>
