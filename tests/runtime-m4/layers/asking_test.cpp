@@ -49,7 +49,7 @@ TEST_CASE(
     "a sensor that is asked ahead: all its channels, one tick before, then sampled when due") {
   AskingRig robot;
   robot.run(45);
-  // The program begins at 0, so the first time there is nothing before.
+  // The program begins at 0, so the first sample is not asked ahead.
   CHECK(robot.asked == std::vector<Asked>{{0, true, 1},
                                           {0, true, 2},
                                           {0, false, 1},
@@ -74,7 +74,7 @@ TEST_CASE("a sensor that is asked ahead: who has answers late is waited for, two
     CHECK_FALSE(sampled.ahead);
     CHECK(sampled.at_ms == 20 + std::min(late, 2U));
     robot.run(50);
-    CHECK(robot.asked.back().at_ms >= 40);  // its next turn is when it would have been
+    CHECK(robot.asked.back().at_ms >= 40);  // its next turn is not shifted
     CHECK(robot.asked.back().at_ms <= 42);
   }
 }
