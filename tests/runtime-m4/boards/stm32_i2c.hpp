@@ -33,7 +33,7 @@ public:
   unsigned clocks = 0;                          // clocks outside of transfers
   std::vector<std::vector<std::byte>> written;  // messages, in order
 
-  // --- what else may happen ---
+  // --- other events ---
   bool another_master = false;      // takes the bus at the next byte
   bool dma_fails = false;           // at the next byte; the channel is off then
   bool spurious_bus_error = false;  // at the next byte (ES0250: meaningless for a master)

@@ -169,7 +169,7 @@ TEST_CASE(
   rings.guard.drive(0, 1500, 0);
   CHECK(rings.board.pulses[0].back() == 1500);
   rings.guard.own(zero);
-  CHECK(rings.board.pulses[0].back() == 0);  // off, before it is let go
+  CHECK(rings.board.pulses[0].back() == 0);  // off, before let_go()
   CHECK(rings.handed() == Rings::Handed{{0, true}});
   rings.guard.disown();
   CHECK(rings.handed() == Rings::Handed{{0, false}});

@@ -55,7 +55,7 @@ struct Drive {
   // Until the command is done, or `until`.
   void run(kernel::Time until = kernel::kForever) {
     while (wake != drivers::kDone && wake <= until) {
-      REQUIRE(wake > now);  // else it would never come to an end
+      REQUIRE(wake > now);  // otherwise it would never end
       now = wake;
       wake = driver.advance(device(), now);
     }

@@ -241,7 +241,7 @@ TEST_CASE("ws2812: the guard shows nothing for whom it has halted, nor for who h
   outputs.show(0, 7);
   CHECK(told() == Pictures{0});
   outputs.show(1, 7);
-  outputs.halt(0b10);  // before it was told
+  outputs.halt(0b10);  // before the command was sent
   CHECK(told() == Pictures{0, 0});
   outputs.show(1, 7);
   CHECK(told() == Pictures{0, 0});

@@ -228,7 +228,7 @@ TEST_CASE("a thread whose entry returns is stopped, the watcher is told, the oth
   auto& brief = rig.add("brief", Category::behavior, 5, [&] { rig.note("brief"); });
   rig.add("other", Category::behavior, 1, [&] {
     rig.note("other");
-    rig.kernel.signal(brief.thread, kA);  // to nobody: no effect
+    rig.kernel.signal(brief.thread, kA);  // the thread has ended: no effect
     CHECK(rig.kernel.state(brief.thread) == Thread::State::stopped);
   });
   rig.kernel.run();

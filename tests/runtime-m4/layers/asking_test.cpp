@@ -1,4 +1,5 @@
-// Sensors on a bus that works by itself: asked a millisecond before they are sampled, and waited for a little, not for ever.
+// Sensors on a bus that works in the background: they are asked a millisecond before they are sampled, and waited for a bounded
+// time.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"

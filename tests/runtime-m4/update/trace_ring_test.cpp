@@ -60,7 +60,7 @@ TEST_CASE("who reads is called for the first message, and again when all are tak
     kernel.machine().run_until(kernel.now());
     return reader.calls;
   };
-  CHECK(calls_after(3) == 0);  // nobody listens
+  CHECK(calls_after(3) == 0);  // no host listens
   ring.listen(true);
   CHECK(calls_after(3) == 1);
   CHECK(calls_after(100) == 1);  // the reader has not taken them yet; the last ones are lost
