@@ -65,7 +65,7 @@ public:
 
 private:
   using Program = ProgramStore::Program;
-  // What is being done with the store. No program runs while one is read. If the wanted one is not whole, the other
+  // What is being done with the store. No program runs while one is read. If the wanted one is damaged, the other
   // one is read.
   enum class Doing : std::uint8_t {
     nothing,

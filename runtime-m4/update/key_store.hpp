@@ -2,7 +2,7 @@
 // write.
 //
 // There are two records, each on its own page. The valid one with the higher number counts; a write goes to the other. Each
-// write increments the number, and a board with an owner writes at each start, so the number also tells its starts apart.
+// write increments the number, and a board with an owner writes at each start, so the number also identifies the start.
 #pragma once
 
 #include <cstdint>

@@ -44,8 +44,8 @@ function(robosync_board target folder)
   robosync_wire_board(${target}_asserted)
 endfunction()
 
-# Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
-# nobody defines, so code that allocates does not link.
+# Linked as C, without the C++ library, and without a heap: newlib's malloc needs _sbrk, which is not
+# defined, so code that allocates does not link.
 function(robosync_link target folder name board runtime)
   add_executable(${target} ${ARGN})
   target_link_libraries(${target} PRIVATE ${board} ${runtime})

@@ -19,17 +19,17 @@ void write(std::uint16_t pin, std::uint32_t pulse_us);
 // The last pulse that was written.
 std::uint32_t read(std::uint16_t pin);
 
-// Nobody drives it until it is taken back: it is low then. It gives no pulses. What is no output is left alone.
+// Nothing drives the pin between let_go() and take_back(); then it is low. It must give no pulses. No effect on other pins.
 void let_go(std::uint16_t pin);
 void take_back(std::uint16_t pin);
 
 // Sets the pin at an enable input low (on) or high (off). No effect on other pins.
 void enable(std::uint16_t pin, bool on);
 
-// Which pin of the chip it is; null: none that gives pulses.
+// The chip's pin; null if it is not for pulses.
 const Pin* chip_pin(std::uint16_t pin);
 
-// All of them off, at once, and for good: until start(). Any state of the machine.
+// Switches all of them off, immediately, until start(). [any processor state]
 void switch_off();
 
 // A module's period has ended. [its interrupt]
