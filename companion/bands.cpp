@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLowest = 120, kHighest = 5500;  // Hz
 constexpr double kLess =
-    0.95;  // low tones are louder in speech, and say less: of each sample so much of the one before is taken away
+    0.95;  // pre-emphasis: in speech, low tones are louder but carry less information
 
 double mel_of(double hertz) {
   return 2595 * std::log10(1 + hertz / 700);

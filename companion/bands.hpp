@@ -1,4 +1,4 @@
-// Sound as loudness in bands of tones, each as wide as an ear tells tones apart (the mel scale: S. Davis and P. Mermelstein,
+// Sound as loudness in frequency bands that match the ear's resolution (the mel scale: S. Davis and P. Mermelstein,
 // "Comparison of parametric representations for monosyllabic word recognition", IEEE Trans. ASSP 28 (1980), section II).
 #pragma once
 
@@ -18,7 +18,7 @@ constexpr long kHopMs = kHop * 1000 / kSoundRate;
 class Bands {
 public:
   Bands();
-  // Of this block and the one before it, in halves of a decibel above the softest.
+  // The levels of this block and the one before it, in half decibels above the softest.
   [[nodiscard]] Levels hear(std::span<const std::int16_t, kHop> block);
 
 private:
@@ -29,7 +29,7 @@ private:
   std::array<std::complex<double>, kWindow> tones_{};
   std::array<std::complex<double>, kHalf> turns_{};
   std::array<std::size_t, kBands + 2>
-      edges_{};  // of the bands, places in tones_: each reaches to the middles of its neighbours
+      edges_{};  // of the bands, indices in tones_: each band reaches to the middles of its neighbours
   double last_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// command_words: which of a few words is said. By pocketsphinx, which looks for each of them in what it hears (its search
-// "kws"), with the English model of Debian's pocketsphinx-en-us.
+// command_words: detects which of a few words is said. pocketsphinx spots each of them in the sound (its search "kws"), with the
+// English model of Debian's pocketsphinx-en-us.
 //
 // robosync-command-words --source FILE|MICROPHONE --period MS --word WORD… --strict N --shown_for S [--no-pace]
 #include <algorithm>
@@ -23,12 +23,12 @@ constexpr const char* kModel = "/usr/share/pocketsphinx/model/en-us/en-us";
 constexpr const char* kDictionary = "/usr/share/pocketsphinx/model/en-us/cmudict-en-us.dict";
 constexpr const char* kQuiet = "silence";
 constexpr std::size_t kBlock =
-    kSoundRate / 50;  // 20 ms: a word is not heard sooner than its last block
-// What a threshold of pocketsphinx grows with: the longer a word, the less likely is each way to say it.
+    kSoundRate / 50;  // 20 ms: a word is not heard before the end of its last block
+// Growth of pocketsphinx's threshold per sound: the longer a word, the less likely each way to say it.
 constexpr double kPerSound = 0.2;
 
 struct Word {
-  std::string as_asked;    // by the program: `very_well`
+  std::string as_asked;    // in the program: `very_well`
   std::string as_spelled;  // in the dictionary: `very well`
 };
 
@@ -56,20 +56,20 @@ public:
     if (ps_start_utt(decoder_.get()) < 0) throw Failure(Exit::outside, "pocketsphinx fails");
   }
 
-  // What is heard with `samples` at the end; empty: nothing.
+  // The word that is detected at the end of `samples`; empty: none.
   std::string hear(std::span<const std::int16_t> samples) {
     ps_process_raw(decoder_.get(), samples.data(), samples.size(), FALSE, FALSE);
     int32 score = 0;
     const char* const heard = ps_get_hyp(decoder_.get(), &score);
     if (heard == nullptr || *heard == '\0') return {};
     const std::string result = last_of(heard);
-    ps_end_utt(decoder_.get());  // it would be heard again
+    ps_end_utt(decoder_.get());  // or it would be detected again
     if (ps_start_utt(decoder_.get()) < 0) throw Failure(Exit::outside, "pocketsphinx fails");
     return result;
   }
 
 private:
-  // Of several that ended within a block.
+  // The last of several words that ended within a block.
   std::string last_of(const char* heard) {
     std::string last;
     int latest = -1;
@@ -136,7 +136,7 @@ void listen(const Arguments& arguments) {
   Decoder decoder(words, arguments.number("strict"));
   const auto source = open_sound(arguments.text("source"), arguments.no_pace());
   constexpr long kBlockMs = kBlock * 1000 / kSoundRate;
-  constexpr int kAfter = 500 / kBlockMs;  // of silence, in which what was said last is heard
+  constexpr int kAfter = 500 / kBlockMs;  // blocks of silence, for the last word to be detected
   ShownWord shown(kQuiet, arguments);
   std::vector<std::int16_t> block(kBlock);
   for (int after = 0; after < kAfter;) {

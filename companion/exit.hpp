@@ -1,12 +1,12 @@
-// How the program of a module ends, which tells rsc whether it helps to start it again (docs/companion.md). Nothing is included
-// here, so that rsc can read it, too.
+// The exit codes of a module's program, which tell rsc whether starting it again helps (docs/companion.md). This header includes
+// nothing, so that rsc can use it, too.
 #pragma once
 
 namespace robosync::companion {
 
 enum class Exit {
   over = 0,
-  asked_wrongly = 2,  // the same again would not help
+  asked_wrongly = 2,  // starting it again would not help
   outside = 3
 };
 

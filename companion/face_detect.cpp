@@ -1,5 +1,5 @@
-// face_detect: how many faces a camera sees, and where the nearest one is. By OpenCV's cascade for faces that look at the
-// camera (package opencv-data).
+// face_detect: how many faces a camera sees, and where the nearest one is. It uses OpenCV's cascade for frontal faces (package
+// opencv-data).
 //
 // robosync-face-detect --source FILE|CAMERA --period MS --view DEG --smallest PERCENT --agreeing N [--preview FILE.png]
 //                      [--no-pace]
@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kCascade =
     "/usr/share/opencv4/haarcascades/haarcascade_frontalface_default.xml";
 constexpr int kHeight =
-    240;  // pictures are made so small: what a face takes is a matter of its size in pixels
+    240;  // pictures are scaled down to this: the time for a face depends on its size in pixels
 constexpr int kMostFaces = 20;
 
 struct Seen {

@@ -10,19 +10,19 @@
 namespace robosync::companion {
 namespace {
 
-constexpr double kParts = 16;             // of a decibel, in which cepstra are counted
-constexpr double kHalf = 2;               // levels are halves of a decibel
-constexpr double kLoudnessCounts = 0.15;  // how loud a frame is says less than what it is made of
-constexpr int kNoiseVaries = 3;           // it was taken from where it was softest
-constexpr int kLoud = 5;  // above the noise, in the mean of all bands: what is said begins and ends
-// Chosen on the recordings that `scripts/rates --settings` takes.
-constexpr double kTimesOwn = 4, kLeast = 330, kMost = 550;  // how far something may be from a word
-constexpr double kOfNearest = 0.65;  // … of what the nearest sample of another word is
+constexpr double kParts = 16;             // cepstra count in this fraction of a decibel
+constexpr double kHalf = 2;               // levels are half decibels
+constexpr double kLoudnessCounts = 0.15;  // a frame's loudness says less than its spectrum
+constexpr int kNoiseVaries = 3;           // the noise was measured where it was softest
+constexpr int kLoud = 5;  // above the noise, mean of all bands: where speech begins and ends
+// Chosen with the recordings of `scripts/rates --settings`.
+constexpr double kTimesOwn = 4, kLeast = 330, kMost = 550;  // largest distance from a word
+constexpr double kOfNearest = 0.65;  // … as a fraction of that of another word's nearest sample
 constexpr Distance kAlike = 450, kTimesOwnAlike = 2;
 constexpr int kLoudest = 160;  // of a sample in a quiet room
-constexpr int kDeepest = 90;   // halves of a decibel below the loudest: nothing is heard any more
+constexpr int kDeepest = 90;   // half decibels below the loudest: inaudible
 
-// c0 of the levels is their mean, the others how much they go up and down once, twice … over the bands.
+// c0 of the levels is their mean; the others are how much they rise and fall once, twice … over the bands.
 std::array<std::array<double, kBands>, kCepstra> waves() {
   std::array<std::array<double, kBands>, kCepstra> result{};
   for (std::size_t i = 0; i < kCepstra; ++i)
@@ -33,7 +33,7 @@ std::array<std::array<double, kBands>, kCepstra> waves() {
   return result;
 }
 
-// In halves of a decibel: two sounds together.
+// The level of two sounds together, in half decibels.
 double together(double a, double b) {
   return 20 * std::log10(std::pow(10, a / 20) + std::pow(10, b / 20));
 }
@@ -47,7 +47,7 @@ Distance apart(const Cepstrum& a, const Cepstrum& b) {
   return static_cast<Distance>(std::sqrt(static_cast<double>(squares)) * (100 / kParts));
 }
 
-// How far its frames are from their mean, in all.
+// The sum of its frames' distances from their mean.
 std::uint64_t liveliness(std::span<const Cepstrum> frames) {
   std::uint64_t sum = 0;
   for (const Cepstrum& frame : frames)
@@ -55,8 +55,8 @@ std::uint64_t liveliness(std::span<const Cepstrum> frames) {
   return sum;
 }
 
-// Of row `i`, the places that a way with these slopes from corner to corner can come by, with two beside them; so what is
-// reached from there has been computed, too.
+// The columns of row `i` that a path with these slopes from corner to corner can pass, plus two on either side, so that the
+// places reached from there have been computed, too.
 std::pair<std::size_t, std::size_t> reach(std::size_t i, std::size_t rows, std::size_t columns) {
   constexpr std::size_t kBeside = 2;
   const std::size_t behind = rows - 1 - i, last = columns - 1;
@@ -132,7 +132,7 @@ void Cepstra::begin(const Levels& noise, int deepest) {
   count_ = until_ = 0;
 }
 
-// What is not above the noise before it begins and after it ends is left out.
+// Leaves out frames that do not rise above the noise at the beginning and the end.
 void Cepstra::add(const std::array<double, kBands>& levels) {
   static const auto kWaves = waves();
   double above = 0;
@@ -150,7 +150,7 @@ void Cepstra::add(const std::array<double, kBands>& levels) {
   }
 }
 
-// What is the same in all frames is the microphone, and how far away one stands.
+// Subtracts the mean: the part common to all frames comes from the microphone and the speaker's distance.
 void Cepstra::end() {
   count_ = until_;
   for (std::size_t i = 0; i < kCepstra && count_ != 0; ++i) {
@@ -163,7 +163,7 @@ void Cepstra::end() {
   }
 }
 
-// Rows are frames of `a`, and begin with two places that cannot be reached.
+// Rows are frames of `a`, and begin with two unreachable places.
 Distance Warping::between(std::span<const Cepstrum> a, std::span<const Cepstrum> b) {
   if (a.empty() || b.empty() || a.size() > 2 * b.size() || b.size() > 2 * a.size()) return kApart;
   constexpr Distance kNever = UINT32_MAX / 4;

@@ -1,9 +1,10 @@
-// Which of the taught words something is that was said, if any. Both become cepstra (S. Davis and P. Mermelstein, IEEE Trans. ASSP
-// 28 (1980), section II), and are laid over each other so that they fit best (dynamic time warping: H. Sakoe and S. Chiba,
-// "Dynamic programming algorithm optimization for spoken word recognition", IEEE Trans. ASSP 26 (1978), the symmetric form with slopes
-// from 1/2 to 2). Samples were taken in a quiet room: the noise of the moment is added to them first.
+// Decides which of the taught words an utterance is, if any. Both are converted to cepstra (S. Davis and P. Mermelstein, IEEE
+// Trans. ASSP 28 (1980), section II) and aligned for the best fit (dynamic time warping: H. Sakoe and S. Chiba, "Dynamic
+// programming algorithm optimization for spoken word recognition", IEEE Trans. ASSP 26 (1978), the symmetric form with slopes
+// from 1/2 to 2). Samples were taken in a quiet room, so the present noise is added to them first.
 //
-// How far something may be from a word follows from how far the word's samples are from each other, and from those of other words.
+// The largest distance at which an utterance still counts as a word follows from the distances of the word's samples to each
+// other and to those of other words.
 #pragma once
 
 #include <array>
@@ -18,20 +19,20 @@
 
 namespace robosync::companion {
 
-// How far two samples are apart, in thousandths of how far their frames are from their own means: noise that covers a part of what
-// is said makes everything more alike, and so counts on both sides. Where they cannot be laid over each other it is kApart.
+// The distance of two samples, in thousandths of the distance of their frames from their own means: noise that covers part of an
+// utterance makes everything more alike, which lowers both. kApart if the samples cannot be aligned.
 using Distance = std::uint32_t;
 constexpr Distance kApart = 1'000'000;
 
 constexpr std::size_t kCepstra = 13;
 using Cepstrum = std::array<std::int16_t, kCepstra>;
 
-// What is said in a sample. Room for the longest one: nothing is allocated.
+// The speech in a sample. It has room for the longest one, so nothing is allocated.
 class Cepstra {
 public:
-  // Of a file: what it would be in this noise if its loudest band were `loudest`.
+  // Of a sample from a file, as it would be in this noise if its loudest band were `loudest`.
   void of_sample(const Sample& sample, int loudest, const Levels& noise);
-  // Of an utterance: nothing counts as softer than the noise.
+  // Of an utterance: levels below the noise are raised to it.
   void of_heard(const Sample& heard, const Levels& noise);
   [[nodiscard]] std::span<const Cepstrum> frames() const { return {frames_.data(), count_}; }
 
@@ -55,32 +56,32 @@ private:
   std::array<Row, 2> local_{};
 };
 
-// How far a sample's loudest band is above the softest level.
+// The level of a sample's loudest band above the softest level.
 [[nodiscard]] int loudest_of(const Sample& sample);
-// As it stands in a file: how far below the loudest.
+// In the format of a file: levels below the loudest.
 [[nodiscard]] Sample below_loudest(const Utterance& utterance);
 
-// Between samples of a file, in a quiet room.
+// Between samples from a file, in a quiet room.
 [[nodiscard]] Distance distance_between(const Sample& a, const Sample& b);
 
 struct Allowed {
-  Distance own = 0;           // from each sample to the nearest other one of the word, in the mean
+  Distance own = 0;           // mean distance from each sample to the nearest other one of the word
   Distance nearest = kApart;  // to a sample of another word
-  std::size_t other = 0;      // the place of that word
-  Distance most = 0;          // what is further away is not the word
+  std::size_t other = 0;      // the index of that word
+  Distance most = 0;          // an utterance further away is not the word
 };
-// What `strict` is when robot.json does not say (modules.def).
+// The default of `strict` in robot.json (modules.def).
 constexpr double kUsualStrict = 50;
-// Of each word. The higher `strict`, the less is taken for a word.
+// For each word. The higher `strict`, the fewer utterances count as a word.
 [[nodiscard]] std::vector<Allowed> allowed_distances(const std::vector<TaughtWord>& words,
                                                      double strict);
-// A word and the one that is nearest to it: one of them may be taken for the other.
+// Whether a word and the one nearest to it may be mistaken for each other.
 [[nodiscard]] bool sound_alike(const Allowed& allowed);
 
 class Matcher {
 public:
   Matcher(const std::vector<TaughtWord>& words, double strict);
-  // The place of the word, or nothing.
+  // The index of the word, or nothing.
   [[nodiscard]] std::optional<std::size_t> match(const Utterance& utterance);
 
 private:

@@ -1,5 +1,5 @@
-// objects: which markers a camera sees, and what has a vivid colour; the nearest of each, and where it is. Markers are ArUco's of
-// 4 × 4 squares, by OpenCV's module aruco, and QR codes whose text is a number, by ZXing (OpenCV in Debian reads none).
+// objects: which markers and vividly coloured things a camera sees; the nearest of each, and where it is. Markers are ArUco's of
+// 4 × 4 squares, read by OpenCV's module aruco, and QR codes whose text is a number, read by ZXing (Debian's OpenCV cannot).
 //
 // robosync-objects --source FILE|CAMERA --period MS --view DEG --smallest PERCENT --vivid PERCENT --hue_from DEG --hue_to DEG
 //                  [--preview FILE.png] [--no-pace]
@@ -20,13 +20,13 @@
 namespace robosync::companion {
 namespace {
 
-constexpr int kMarkerRows = 480;  // higher pictures are made so small: it takes time for each pixel
+constexpr int kMarkerRows = 480;  // larger pictures are scaled down: each pixel takes time
 constexpr int kColorRows = 240;
 constexpr std::size_t kMost = 20;  // of each kind
 constexpr std::size_t kLongestNumber = 3;
 constexpr int kNoMarker = -1;
 constexpr int kTurn = 360;
-constexpr int kHues = kTurn / 2;  // as OpenCV has them in a byte
+constexpr int kHues = kTurn / 2;  // OpenCV's range of hues in a byte
 
 struct Hue {
   const char* word;
@@ -38,7 +38,7 @@ constexpr Hue kColors[] = {
 #undef HUE
 };
 
-// What is looked for, as it was asked for.
+// What to look for, from the arguments.
 struct Wanted {
   explicit Wanted(const Arguments& arguments)
       : view(arguments.number("view")),
@@ -47,7 +47,7 @@ struct Wanted {
         hue_from(arguments.number("hue_from")),
         hue_to(arguments.number("hue_to")) {}
 
-  // Round the circle: from 340 to 20 degrees is red.
+  // The range may wrap around the circle: from 340 to 20 degrees is red.
   [[nodiscard]] bool has_hue(int degrees) const {
     return hue_from <= hue_to ? degrees >= hue_from && degrees <= hue_to
                               : degrees >= hue_from || degrees <= hue_to;
@@ -56,17 +56,17 @@ struct Wanted {
   double view, smallest, vivid, hue_from, hue_to;
 };
 
-// Something in a picture; its size is that of the picture's height: 1.
+// A thing in a picture; its size is relative to the picture's height.
 struct Thing {
   cv::Point2f middle;
   double size;
   std::vector<cv::Point> outline;
   int number;         // of a marker
-  std::size_t color;  // of what is none
+  std::size_t color;  // of a coloured thing
 };
 
 struct Seen {
-  cv::Size size;              // of the picture that they are in
+  cv::Size size;              // of the picture
   std::vector<Thing> things;  // the nearest first
 };
 
@@ -152,7 +152,7 @@ public:
     cv::GaussianBlur(small, calm, {5, 5}, 0);
     cv::cvtColor(calm, hsv, cv::COLOR_BGR2HSV);
     cv::split(hsv, planes);
-    constexpr double kFull = 255, kDark = 0.2;  // in the dark a hue is chance
+    constexpr double kFull = 255, kDark = 0.2;  // in the dark a hue is random
     const cv::Mat is_vivid = (planes[1] >= kFull * wanted_.vivid) & (planes[2] >= kFull * kDark);
     cv::LUT(planes[0], of_hue_, colors);
     for (std::size_t color = 0; color < std::size(kColors); ++color)
@@ -166,13 +166,13 @@ private:
 
   [[nodiscard]] unsigned char color_of(int degrees) const {
     if (!wanted_.has_hue(degrees)) return kNone;
-    std::size_t color = std::size(kColors) - 1;  // the last one goes on from 0
+    std::size_t color = std::size(kColors) - 1;  // the last one continues at 0
     for (std::size_t i = 0; i < std::size(kColors); ++i)
       if (degrees >= kColors[i].from) color = i;
     return static_cast<unsigned char>(color);
   }
 
-  // What of the mask hangs together is a thing, when it fills its box as a ball or a block does, and not as a line.
+  // A connected part of the mask is a thing if it fills its box as a ball or a block does, unlike a line.
   void add(Seen& seen, cv::Mat mask, std::size_t color) const {
     constexpr double kFills = 0.4;
     cv::morphologyEx(mask, mask, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
@@ -195,7 +195,7 @@ private:
   cv::Mat of_hue_ = cv::Mat(1, 256, CV_8U, cv::Scalar(kNone));
 };
 
-// ---- what is said of them
+// ---- reports
 
 void tell(const Seen& seen, double view, const std::string& before) {
   if (seen.things.empty()) return;

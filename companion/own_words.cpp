@@ -1,4 +1,4 @@
-// own_words: which of the words that somebody has taught it is said, in any language.
+// own_words: detects which of the words that somebody has taught it is said, in any language.
 //
 // robosync-own-words --source FILE|MICROPHONE --period MS --words FILE --word WORD… --strict N --shown_for S [--no-pace]
 // robosync-own-words --words FILE --teach WORD (--recording FILE… | --source FILE|MICROPHONE)
@@ -19,7 +19,8 @@
 namespace robosync::companion {
 namespace {
 
-// All that the file knows are compared, since one that the program does not ask for is none of those that it asks for.
+// The matcher compares all words in the file, because one that the program does not ask for must not be mistaken for one that it
+// asks for.
 void check_asked(const Arguments& arguments, const std::vector<TaughtWord>& words) {
   for (const std::string& asked : arguments.words())
     if (asked != kNoWord && std::ranges::find(words, asked, &TaughtWord::name) == words.end())
@@ -36,7 +37,7 @@ void listen(const Arguments& arguments) {
   ShownWord shown(std::string(kNoWord), arguments);
   Bands bands;
   Utterances utterances;
-  constexpr int kAfter = 500 / kHopMs;  // of silence, in which what was said last is heard
+  constexpr int kAfter = 500 / kHopMs;  // blocks of silence, for the last word to be detected
   std::array<std::int16_t, kHop> block;
   for (int after = 0; after < kAfter;) {
     const std::size_t count = source->read(block);

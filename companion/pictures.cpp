@@ -27,10 +27,10 @@ public:
     if (!film_.open(source))
       throw is_file_ ? Failure(Exit::asked_wrongly, source + " is neither a picture nor a film")
                      : Failure(Exit::outside, "there is no camera " + source);
-    film_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // the newest picture, not one that has waited
+    film_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // the newest picture, not an older one from a buffer
   }
 
-  // Waits for the next one; empty: it is over. Throws Failure (outside) when the camera fails.
+  // Waits for the next picture; empty: there are no more. Throws Failure (outside) if the camera fails.
   cv::Mat next() {
     if (is_file_ && !no_pace_) {
       next_ += period_;
@@ -45,7 +45,7 @@ public:
   }
 
 private:
-  // So many pictures further as time has passed.
+  // Skips as many pictures as the period takes.
   cv::Mat of_film() {
     const double rate = std::clamp(film_.get(cv::CAP_PROP_FPS), 1.0, 1000.0);
     passed_ += std::chrono::duration<double>(period_).count() * rate;
@@ -75,7 +75,7 @@ private:
   double passed_ = 0;
 };
 
-// Whoever looks at the file sees a whole one.
+// Replaces the file in one step, so that readers always see a complete one.
 void save(const cv::Mat& picture, const std::string& file) {
   const std::string unfinished = file + ".new.png";
   std::error_code error;

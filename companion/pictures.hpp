@@ -1,5 +1,5 @@
-// What modules that see have in common: the pictures of a camera or a file, how an angle is told, the picture that shows what was
-// seen (docs/companion.md).
+// Shared by the modules that see: pictures from a camera or a file, angles, and the preview of what was seen
+// (docs/companion.md).
 #pragma once
 
 #include <functional>
@@ -11,18 +11,18 @@
 
 namespace robosync::companion {
 
-// So many rows high; it may be enlarged.
+// Scales a picture to `rows` rows; this may enlarge it.
 cv::Mat made_high(const cv::Mat& picture, int rows);
 
-// Where the column `x` of a picture is, from straight ahead, in degrees; to the right is positive, as for a joint. `view`: from its
-// left to its right edge.
+// The angle of a picture's column `x` from straight ahead, in degrees; positive to the right, as for a joint. `view`: the angle
+// between the picture's left and right edge.
 double angle_of(double x, int columns, double view);
 
-// Given a picture, it says what is known of it; where there is a `drawing`, it puts there what shows that.
+// Analyzes a picture and reports the result; if `drawing` is not null, it also draws the result there.
 using Look = std::function<void(const cv::Mat& picture, cv::Mat* drawing)>;
 
-// Looks at the pictures of --source, one each --period, until they are over; a drawing goes once a second to --preview, if given.
-// A picture is seen again and again, unless with --no-pace; a film once. Throws Failure.
+// Calls `look` with the pictures of --source, one each --period, until they end. If --preview is given, writes a drawing there
+// once a second. A still picture is repeated for ever, except with --no-pace; a film plays once. Throws Failure.
 void watch(const Arguments& arguments, const Look& look);
 
 }  // namespace robosync::companion

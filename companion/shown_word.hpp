@@ -1,4 +1,4 @@
-// The output WORD: says what is heard at once, and otherwise once a period what stays.
+// The output WORD: reports a heard word immediately, and repeats the present value once a period.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace robosync::companion {
 
 class ShownWord {
 public:
-  // `quiet`: what is said where nothing was heard. --period and --shown_for.
+  // `quiet`: the value when nothing was heard. Uses --period and --shown_for.
   ShownWord(std::string quiet, const Arguments& arguments);
 
   void heard(const std::string& word);
-  // So much sound has been heard.
+  // Call it after each piece of sound, with its length.
   void pass(long ms);
 
 private:
@@ -21,7 +21,7 @@ private:
 
   std::string quiet_;
   long period_, shown_for_;               // in ms, as all times here
-  long time_ = 0, until_ = 0, told_ = 0;  // in sound
+  long time_ = 0, until_ = 0, told_ = 0;  // positions in the sound
   std::string now_;
 };
 

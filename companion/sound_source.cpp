@@ -1,4 +1,4 @@
-// Files by libsndfile; a microphone by arecord (package alsa-utils), whose stdout is read.
+// Reads files with libsndfile, and a microphone from the stdout of arecord (package alsa-utils).
 #include "companion/sound_source.hpp"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ public:
   }
 
 private:
-  // The mean of what falls into a sample, or the same one again.
+  // Resamples: outputs the mean of the input samples that fall into an output sample, or repeats one.
   void take(double sample) {
     sum_ += sample;
     ++count_;

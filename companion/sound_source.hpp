@@ -1,4 +1,4 @@
-// Sound, 16,000 samples a second, of one channel: from a file (WAV, FLAC, Ogg) or a microphone.
+// Sound, 16,000 samples a second, one channel, from a file (WAV, FLAC, Ogg) or a microphone.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ public:
   SoundSource(const SoundSource&) = delete;
   SoundSource& operator=(const SoundSource&) = delete;
 
-  // Fills `samples`, and waits for that; fewer: it is over. Throws Failure (outside) when the microphone fails.
+  // Waits until `samples` is full. Fewer samples: the sound is over. Throws Failure (outside) if the microphone fails.
   virtual std::size_t read(std::span<std::int16_t> samples) = 0;
 };
 
-// A file when there is one called `name`, else the microphone that ALSA calls so. Throws Failure (outside).
+// Opens the file `name` if there is one, otherwise the microphone with that ALSA name. Throws Failure (outside).
 [[nodiscard]] std::unique_ptr<SoundSource> open_sound(const std::string& name, bool no_pace);
 
 }  // namespace robosync::companion

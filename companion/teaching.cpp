@@ -26,11 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kWanted = 3;  // samples of a word, at least
-constexpr Distance kSame = 650;     // two samples that are further apart are of two words
+constexpr Distance kSame = 650;     // two samples further apart are different words
 constexpr std::size_t kPerSecond = kSoundRate / kHop;
 constexpr std::size_t kLongestRecording =
-    10 * kPerSecond;                     // frames; likewise the pause before a word
-constexpr std::size_t kQuietAfter = 24;  // frames behind a recording that ends with its word
+    10 * kPerSecond;                     // frames; also the longest pause before a word
+constexpr std::size_t kQuietAfter = 24;  // frames added to a recording that ends with its word
 
 [[noreturn]] void refuse(const std::string& why) {
   throw Failure(Exit::asked_wrongly, why);
@@ -57,7 +57,7 @@ std::vector<TaughtWord> parsed(const std::string& file) {
   return std::move(read.words);
 }
 
-// Beside it first, so that whoever reads it, and whenever the power fails, finds the old one or the new one.
+// Writes a new file and renames it, so that a reader, even after a power cut, finds either the old file or the new one.
 void save(const std::string& file, const std::vector<TaughtWord>& words) {
   const std::string text = write_words(words), beside = file + ".new";
   const int out = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
@@ -87,7 +87,7 @@ class Listener {
 public:
   explicit Listener(const std::string& name) : name_(name), source_(open_sound(name, true)) {}
 
-  // Of 16 ms; false: it is over.
+  // The levels of the next 16 ms; false: the sound is over.
   bool next(Levels& levels) {
     std::array<std::int16_t, kHop> block{};
     const std::size_t count = source_->read(block);
@@ -113,7 +113,7 @@ std::vector<Levels> all_of(Listener& listener) {
   return frames;
 }
 
-// The word that is said in a recording, once.
+// The single word that is said in a recording.
 Sample sample_of(const std::string& recording) {
   if (!is_file(recording)) throw Failure(Exit::outside, "there is no file " + recording);
   Listener listener(recording);
@@ -135,7 +135,7 @@ Sample sample_of(const std::string& recording) {
                                : ": no word is heard in it: it is silent, too noisy or too short"));
 }
 
-// Waits for somebody to say it so often.
+// Waits until somebody has said the word `count` times.
 std::vector<Sample> samples_of_microphone(const std::string& name, const std::string& word,
                                           std::size_t count) {
   Listener listener(name);
@@ -162,7 +162,7 @@ std::vector<Sample> samples_of_microphone(const std::string& name, const std::st
   return samples;
 }
 
-// ---- what is said of words
+// ---- reports about words
 
 unsigned percent(Distance distance) {
   return std::min((distance + 5) / 10, 100U);
@@ -182,7 +182,7 @@ void warn(const std::vector<TaughtWord>& words, const std::vector<Allowed>& allo
     const std::size_t other = allowed[i].other;
     if (words.size() < 2 || !sound_alike(allowed[i])) continue;
     if (other < i && allowed[other].other == i && sound_alike(allowed[other]))
-      continue;  // said already
+      continue;  // already reported
     std::printf(
         "warning: `%s` and `%s` sound alike, so both may be missed: take another word for one of "
         "them\n",
@@ -190,7 +190,7 @@ void warn(const std::vector<TaughtWord>& words, const std::vector<Allowed>& allo
   }
 }
 
-// Which of the samples is of another word, as it seems.
+// Refuses a new sample that seems to be another word.
 void check_samples(const TaughtWord& word, std::size_t known,
                    const std::vector<std::string>& from) {
   for (std::size_t i = known; i < word.samples.size(); ++i) {

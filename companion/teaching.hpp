@@ -1,4 +1,5 @@
-// What `rsc teach` does: words are added to a file of words, listed and forgotten. The file is replaced as a whole, or not at all.
+// The work of `rsc teach`: adds words to a file of words, lists them and forgets them. The file is replaced as a whole or not at
+// all.
 #pragma once
 
 #include <string>
@@ -9,10 +10,10 @@
 
 namespace robosync::companion {
 
-// Throws Failure (asked_wrongly) when there is none, or it cannot be understood: as all of these.
+// Throws Failure (asked_wrongly) if the file is missing or cannot be parsed. So do the functions below.
 [[nodiscard]] std::vector<TaughtWord> load_words(const std::string& file);
 
-// --words FILE --teach WORD, of --recording FILE… or --source.
+// --words FILE --teach WORD, with samples from --recording FILE… or --source.
 void teach(const Arguments& arguments);
 void forget(const std::string& file, const std::string& name);
 void list(const std::string& file);

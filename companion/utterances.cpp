@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::size_t kLookEvery = 8;  // frames
 constexpr std::size_t kFirstLook = 16;
-constexpr std::size_t kSoftest = 5;       // one in so many frames
-constexpr std::uint8_t kLeastNoise = 30;  // below that is what a sample's last bit does
-constexpr int kMargin = 4;  // noise is not always the same: so far above it a band counts
-constexpr int kLoud = 3;    // … and so far above that in the mean of all bands a frame is loud
+constexpr std::size_t kSoftest = 5;       // the softest fifth of the frames is noise
+constexpr std::uint8_t kLeastNoise = 30;  // below that is the effect of a sample's last bit
+constexpr int kMargin = 4;                // noise varies: a band counts from this level above it
+constexpr int kLoud = 3;                  // mean of all bands above that: the frame is loud
 constexpr std::size_t kInARow = 2;
 
 }  // namespace
@@ -89,7 +89,7 @@ void Utterances::begin() {
   length_ = loud_until_ = frames;
 }
 
-// What is loud of the last frames may be of those before, since they are taken together.
+// The last frames may be loud only because they are averaged with those before them.
 bool Utterances::end() {
   talks_ = false;
   const std::size_t frames = loud_until_ - std::min(loud_until_, kSmooth - 2);

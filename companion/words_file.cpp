@@ -58,7 +58,7 @@ private:
     if (trouble_.empty()) trouble_ = why;
   }
 
-  // Without what ends it.
+  // The next line, without its line end.
   std::string_view next() {
     const std::size_t end = std::min(rest_.find('\n'), rest_.size());
     const std::string_view line = rest_.substr(0, end);
@@ -67,7 +67,7 @@ private:
     return line;
   }
 
-  // The sum comes first: of what is broken nothing else is worth saying.
+  // The checksum is checked first: if the file is damaged, no other error is worth reporting.
   void read_head() {
     const std::string_view text = rest_;
     const std::string_view first = next();

@@ -1,6 +1,6 @@
-// Words that somebody has taught (`rsc teach`), as they stand in a file (docs/algorithms.md#the-file-of-words). Their sound is
-// not in it: of each 16 ms of a sample, how loud the tones of each band were. Of the standard library alone, so that rsc, too,
-// can read it: it wants to know the names.
+// The file format of taught words (`rsc teach`; docs/algorithms.md#the-file-of-words). The file does not contain their sound, but
+// the loudness of each frequency band in each 16 ms of a sample. This uses only the standard library, so that rsc can use it,
+// too: it needs the names.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 namespace robosync::companion {
 
 constexpr std::size_t kBands = 20;
-// In halves of a decibel: of a sample how far below its loudest band, 255 at most; of what is heard above the softest.
+// In half decibels: in a sample, below its loudest band, at most 255; in an utterance, above the softest.
 using Levels = std::array<std::uint8_t, kBands>;
 using Sample = std::vector<Levels>;
 
-constexpr std::size_t kMostWords = 24, kMostSamples = 8;    // … of each word
+constexpr std::size_t kMostWords = 24, kMostSamples = 8;    // samples of each word
 constexpr std::size_t kLeastFrames = 8, kMostFrames = 125;  // of a sample: 128 ms to 2 s
 constexpr std::size_t kLongestName = 31;
 constexpr std::size_t kLargestFile = 1 << 20;
-constexpr std::string_view kNoWord = "none";  // what is said where none of them was heard
+constexpr std::string_view kNoWord = "none";  // the value when none of them was heard
 
 struct TaughtWord {
   std::string name;
@@ -30,19 +30,19 @@ struct TaughtWord {
 
 struct ReadWords {
   std::vector<TaughtWord> words;
-  std::string trouble;   // empty: there is none; else there are no words
-  std::size_t line = 0;  // where it is
+  std::string trouble;   // the error; empty: none. With an error there are no words
+  std::size_t line = 0;  // the error's line
 };
 
 // Never throws, whatever `text` is.
 [[nodiscard]] ReadWords read_words(std::string_view text);
 [[nodiscard]] std::string write_words(const std::vector<TaughtWord>& words);
-// With its last line, which tells a whole file from a broken one.
+// Appends the last line, the checksum, which tells an intact file from a damaged one.
 [[nodiscard]] std::string with_sum(std::string text);
 
-// A letter or _, then letters, digits or _, all of ASCII; and not what means something else.
+// A letter or _, then letters, digits or _, all ASCII; and not a name with another meaning.
 [[nodiscard]] bool can_be_word(std::string_view name);
-// As programs compare words: A is a.
+// Compares words as programs do: ignoring case.
 [[nodiscard]] bool same_word(std::string_view a, std::string_view b);
 
 }  // namespace robosync::companion

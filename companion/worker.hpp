@@ -1,7 +1,7 @@
-// What the programs of modules have in common: how they are started, and what they say (docs/companion.md).
+// Shared by the modules' programs: their arguments and their output (docs/companion.md).
 //
-// On stdout a line for each output that is known, at least once a period: NAME VALUE. What is wrong goes to stderr, and the
-// exit code says whether it helps to start the program again.
+// They print a line to stdout for each known output, at least once a period: NAME VALUE. Errors go to stderr, and the exit code
+// says whether starting the program again helps.
 #pragma once
 
 #include <chrono>
@@ -23,21 +23,21 @@ private:
   Exit exit_;
 };
 
-// --NAME VALUE …, some of them several times, and --no-pace.
+// --NAME VALUE …, some of them repeated, and --no-pace.
 class Arguments {
 public:
-  // Throws Failure (asked_wrongly), as all of these.
+  // Throws Failure (asked_wrongly). So do the members below.
   Arguments(int count, char** texts);
 
   const std::string& text(const std::string& name) const;
   std::string text_or(const std::string& name, const std::string& otherwise) const;
-  // All that it was given with; none, when it was not.
+  // All values that it was given; empty if it was not given.
   const std::vector<std::string>& texts(const std::string& name) const;
   bool has(const std::string& name) const { return !texts(name).empty(); }
   double number(const std::string& name) const;
   std::chrono::milliseconds period() const;  // --period, in ms
   const std::vector<std::string>& words() const { return texts("word"); }
-  // Recordings are read as fast as they can be, and not in their own time.
+  // Recordings are read as fast as possible, not in real time.
   bool no_pace() const { return no_pace_; }
 
 private:
@@ -45,11 +45,11 @@ private:
   bool no_pace_ = false;
 };
 
-// Throws Failure (outside) when nobody listens any more.
+// Throws Failure (outside) when the reader has gone.
 void say(const std::string& output, const std::string& value);
 void say(const std::string& output, double value);
 
-// Runs `work`; what it throws is said, and becomes the exit code.
+// Runs `work`. An exception that it throws is printed and becomes the exit code.
 int run(void (*work)(const Arguments&), int count, char** texts);
 
 }  // namespace robosync::companion

@@ -15,7 +15,7 @@
 namespace robosync::tool {
 namespace {
 
-// What robosync_module.h says in C of vm/.
+// The types of vm/ as robosync_module.h writes them in C.
 constexpr std::uint8_t number_of(vm::Dimension dimension) {
   return static_cast<std::uint8_t>(dimension);
 }
@@ -77,7 +77,7 @@ compiler::WordsInFile words_in_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return {{}, "is not there"};
   if (!std::filesystem::is_regular_file(path, error))
-    return {{}, "is no file"};  // a pipe, that waits
+    return {{}, "is not a file"};  // a pipe, which would block
   std::string text(companion::kLargestFile + 1, '\0');
   const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) return {{}, "cannot be read"};

@@ -1,4 +1,5 @@
-// The algorithm modules of the firmware and those in files, as the compiler and the analysis want to know them: neither knows the runtime.
+// Describes the algorithm modules of the firmware, and those in files, to the compiler and the analysis, which do not know the
+// runtime.
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@ namespace robosync::tool {
 [[nodiscard]] analysis::Instructions module_cost(const vm::Image& image,
                                                  const vm::Sensor& algorithm);
 
-// What has happened to modules in files since they were loaded, a line each: they failed, and the robot went on without them.
+// One line for each module in a file that failed after it was loaded; the robot went on without it.
 [[nodiscard]] std::string module_troubles();
 
 }  // namespace robosync::tool

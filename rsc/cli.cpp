@@ -1,5 +1,5 @@
-// Builds the parser from the list of verbs, so that help, dispatch and suggestions have one source. The only
-// file that includes CLI11: it takes longer to compile than all the verbs together.
+// Builds the parser from the list of verbs, so that help, dispatch and suggestions have one source. The only file
+// that includes CLI11, which takes longer to compile than all the verbs together.
 #include "rsc/cli.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ void Options::arguments(const std::string& name, std::vector<std::string>& value
 
 namespace {
 
-// CLI11 asks for its own kind of error.
+// CLI11 expects its own type of exception.
 void take_word(const Options::Take& take, const std::string& word) {
   try {
     take(word);
@@ -58,12 +58,12 @@ CLI::Option* add_named(CLI::App& app, const std::string& names, const std::strin
 
 }  // namespace
 
-// A shell makes nothing of a variable that is not set: then a run would be recorded nowhere.
+// An unset shell variable gives an empty word: without this check the run would not be recorded.
 void Options::option(const std::string& names, const std::string& text, std::string& value,
                      const std::string& description, Need need) {
   const auto take = [&value, name = names.substr(names.rfind(',') + 1)](const std::string& word) {
     if (word.empty())
-      throw std::invalid_argument(name + ": it is given nothing, name a file or leave it out");
+      throw std::invalid_argument(name + ": it is empty; name a file or leave it out");
     value = word;
   };
   add_named(app_, names, text, take, description)->required(need == Need::required);
@@ -116,7 +116,7 @@ constexpr std::string_view kEpilogue =
     "trouble.\n"
     "`rsc help VERB` explains a verb.";
 
-// Of all verbs, or of the one that is named: building the options of the others takes as long as a short compilation.
+// For all verbs, or only for `only`: building the options of the others takes as long as a short compilation.
 std::unique_ptr<CLI::App> make_parser(const Verb* only = nullptr) {
   auto app = std::make_unique<CLI::App>("RoboSync: programs for social robots.", "rsc");
   app->set_version_flag("--version", std::string("rsc ") + ROBOSYNC_VERSION);
@@ -157,7 +157,7 @@ std::vector<std::string> verb_names() {
                                          did_you_mean(word, verb_names())));
 }
 
-// "--seed: At Most 1 required but received 2", "--config: 1 required FILE missing". Empty: something else is wrong.
+// "--seed: At Most 1 required but received 2", "--config: 1 required FILE missing". Empty: another error.
 std::string mismatch(const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return {};
   const std::string_view said = error.what();
@@ -165,21 +165,21 @@ std::string mismatch(const CLI::ParseError& error) {
   constexpr std::string_view kRequired = "required ", kMissing = " missing";
   const std::size_t required = said.rfind(kRequired);
   if (said.find("At Most") != std::string_view::npos)
-    return fmt::format("{} may be there once only", name);
+    return fmt::format("{} may be given only once", name);
   if (required == std::string_view::npos || !said.ends_with(kMissing)) return {};
   const std::size_t begin = required + kRequired.size();
-  return fmt::format("{} needs its {} behind it", name,
+  return fmt::format("{} needs {} after it", name,
                      said.substr(begin, said.size() - kMissing.size() - begin));
 }
 
-// CLI11 says what is wrong; a misspelt option deserves a suggestion.
+// CLI11's message, with a suggestion for a misspelt option.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const CLI::App& at = chosen.empty() ? app : *chosen.front();
   std::string message = error.what();
   const std::vector<std::string> extras = at.remaining(true);
   const std::string word = extras.empty() ? std::string() : extras.front();
-  // A misspelt option comes before a file that is missing, which CLI11 says first.
+  // CLI11 would report the missing file instead of the misspelt option.
   if (word.starts_with("-") || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::vector<std::string> known;
     for (const CLI::Option* option : at.get_options()) {
@@ -201,13 +201,12 @@ void parse(CLI::App& app, int count, const char* const* arguments) {
   if (first.empty()) throw Failure(Exit::usage, "say what to do\n" + app.help());
   constexpr std::array<std::string_view, 3> kWithoutVerb = {"-h", "--help", "--version"};
   if (first.starts_with("-") && std::ranges::find(kWithoutVerb, first) == kWithoutVerb.end())
-    throw Failure(Exit::usage,
-                  fmt::format("`{}` stands where a verb does: write rsc VERB, then its options\n"
-                              "`rsc help` lists the verbs",
-                              first));
+    throw Failure(Exit::usage, fmt::format("`{}` is not a verb: write rsc VERB, then its options\n"
+                                           "`rsc help` lists the verbs",
+                                           first));
   if (!first.starts_with("-") && find_verb(first) == nullptr) unknown_verb(first);
   try {
-    app.parse(count, const_cast<char**>(arguments));  // CLI11 reads them only
+    app.parse(count, const_cast<char**>(arguments));  // CLI11 does not modify them
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
     std::cout << (chosen.empty() ? app.help() : chosen.front()->help(app.get_name()));

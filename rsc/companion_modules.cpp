@@ -9,7 +9,7 @@ namespace {
 
 using compiler::AlgorithmModule;
 
-// Builds the list from the lines, each of which belongs to the last MODULE.
+// Builds the list from the lines; each belongs to the latest MODULE.
 struct Lines {
   std::vector<AlgorithmModule> modules;
 

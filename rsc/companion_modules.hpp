@@ -8,10 +8,10 @@
 
 namespace robosync::tool {
 
-// Their `device` says what they read there.
+// `device`: what the module reads there.
 [[nodiscard]] std::span<const compiler::AlgorithmModule> companion_modules();
 
-// What the module called `name` does; empty when there is none.
+// What the module `name` does; empty if there is no such module.
 [[nodiscard]] std::string_view doc_of_companion_module(std::string_view name);
 
 }  // namespace robosync::tool

@@ -1,5 +1,5 @@
-// What bash, fish and zsh need to complete the words of rsc. Values are words where an option names them ("human|json"), serial
-// ports after --port, files where it takes one, and nothing where it takes a number or a name.
+// Completion scripts for bash, fish and zsh. They offer the words of an option ("human|json"), serial ports after --port, files
+// where an option takes one, and nothing for a number or a name.
 #include <string>
 #include <string_view>
 
@@ -21,7 +21,7 @@ bool is_path(const OptionUsage& option) {
          option.value.find('.') != std::string::npos;
 }
 
-// "human|json" as "human json"; nothing when the value is no choice of words.
+// "human|json" as "human json"; empty if the value is not a choice of words.
 std::string words_of(const OptionUsage& option) {
   std::string words = option.value;
   if (words.find('|') == std::string::npos) return {};
@@ -67,7 +67,7 @@ std::string fish_option(const VerbUsage& verb, const OptionUsage& option) {
   return fmt::format("{} -d {}\n", line, in_fish(option.description));
 }
 
-// As zsh quotes within '…'; what `_arguments` and `_describe` read has marks of its own.
+// As zsh quotes within '…'; `_arguments` and `_describe` have special characters of their own.
 std::string in_zsh(std::string_view text) {
   return escaped(text, {{'\'', "'\\''"}, {'\\', "\\\\"}, {':', "\\:"}, {'[', "\\["}, {']', "\\]"}});
 }
@@ -79,7 +79,7 @@ std::string zsh_offer(const OptionUsage& option) {
   return words.empty() ? " " : "(" + words + ")";
 }
 
-// `--name[what it does]:VALUE:offer`, and by its place `*:FILE:_files`.
+// `--name[description]:VALUE:offer`; for a positional argument `*:FILE:_files`.
 std::string zsh_option(const OptionUsage& option) {
   if (option.names.empty()) return fmt::format("        '*:{}:_files' \\\n", in_zsh(option.value));
   std::string lines;

@@ -1,4 +1,5 @@
-// May assume POSIX. Promises nothing is coloured or animated where a program reads it.
+// May assume POSIX. Promises that output read by a program is not coloured or
+// animated.
 #include "rsc/console.hpp"
 
 #include <cstdlib>

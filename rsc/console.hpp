@@ -1,12 +1,13 @@
-// Whom the tool talks to: a person at a terminal, or a program.
+// Whether the tool's output goes to a person at a terminal or to a program.
 #pragma once
 
 namespace robosync::tool {
 
 enum class Color { automatic, always, never };
-// For all that is said from now on.
+// Applies to everything printed from now on.
 void choose_color(Color color);
-// Colour on stderr: as chosen; automatic is only on a terminal, and never with NO_COLOR.
+// Whether stderr is coloured: as chosen; automatic means on a terminal, unless NO_COLOR
+// is set.
 [[nodiscard]] bool color_on_stderr();
 [[nodiscard]] bool stderr_is_terminal();
 

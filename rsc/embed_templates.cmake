@@ -1,6 +1,6 @@
-# Writes the robots of templates.txt, each with its files, into one C++ file:
+# Writes the robots of templates.txt with their files into one C++ file:
 #   cmake -DOUT=FILE -DTEMPLATES=templates.txt -DEXAMPLES=FOLDER -P embed_templates.cmake
-# The path of the schema is left out: it is that of the repository.
+# The path of the schema is removed: it is only valid in the repository.
 file(STRINGS ${TEMPLATES} lines REGEX "^[a-z]")
 set(files_of "")
 set(rows "")

@@ -1,4 +1,4 @@
-// A text as a part of another one, in which some characters mean something else.
+// Escapes a text for a format in which some characters have a meaning.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How a verb ends when it does not end well: an exit code, and what is wrong in one message.
+// How a verb fails: an exit code and one message that says what is wrong.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ enum class Exit : std::uint8_t {
 
 class Failure : public std::runtime_error {
 public:
-  // An empty message: it has been said already.
+  // An empty message: the reason has been printed already.
   Failure(Exit exit, const std::string& message) : std::runtime_error(message), exit_(exit) {}
   Exit exit() const { return exit_; }
 

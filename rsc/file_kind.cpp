@@ -1,4 +1,4 @@
-// Looks for the keys that only one kind has. May assume nothing of the text.
+// Looks for keys that only one kind of file has. The text is not trusted.
 #include "rsc/file_kind.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kBeginning = std::size_t{64} * 1024;
 constexpr std::string_view kSpace = " \t\r\n";
 
-// A text that is quoted in another one has no colon behind it.
+// A string that is a value has no colon after it.
 bool has_key(std::string_view text, std::string_view key) {
   for (std::size_t at = text.find(key); at != std::string_view::npos; at = text.find(key, at + 1)) {
     const std::size_t end = at + key.size();
@@ -42,7 +42,7 @@ struct Mark {
   std::string_view key;
   FileKind kind;
 };
-// In this order: robot.json has durations, too.
+// The order matters: robot.json has durations, too.
 constexpr std::array kMarks = {
     Mark{"traceEvents", FileKind::perfetto},    Mark{"sensors", FileKind::configuration},
     Mark{"actuators", FileKind::configuration}, Mark{"stimuli", FileKind::scenario},

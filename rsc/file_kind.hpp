@@ -1,4 +1,4 @@
-// What a file is, by what stands in it: so that a scenario is not read as a robot, nor written over by a trace.
+// Tells what a file is from its content, so that a scenario is not read as a robot or overwritten by a trace.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace robosync::tool {
 
 enum class FileKind : std::uint8_t {
-  other,  // may be anything, and be made again
+  other,  // anything else; may be overwritten
   program,
   configuration,
   scenario,
@@ -18,7 +18,8 @@ enum class FileKind : std::uint8_t {
   perfetto
 };
 
-// Of a text that need not be whole or right: its beginning is enough. Never `program`, which only a name tells.
+// The text may be incomplete or wrong: its beginning is enough. Never `program`, which only the file name
+// tells.
 [[nodiscard]] FileKind kind_of_text(std::string_view text);
 // `other` when it cannot be read.
 [[nodiscard]] FileKind kind_of_file(const std::filesystem::path& path);

@@ -27,7 +27,7 @@ constexpr std::size_t kReadBlock = std::size_t{64} * 1024;
                 fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(error)));
 }
 
-// A file that is read from its beginning to its end; may be a pipe.
+// A file that is read sequentially; may be a pipe.
 class InputFile {
 public:
   explicit InputFile(const fs::path& path)
@@ -40,14 +40,14 @@ public:
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  // What a whole file needs, no more than may be read; of a pipe and of what grows it says little.
+  // The size of the file, up to the limit; only a hint for pipes and growing files.
   std::size_t size_hint() const {
     struct stat facts {};
     if (fstat(file_, &facts) != 0 || facts.st_size < 0) return 0;
     return std::min(static_cast<std::size_t>(facts.st_size), kMaxFile);
   }
 
-  // Fills `room`, unless the file ends before. Bytes read.
+  // Fills `room`, unless the file ends first. Returns the bytes read.
   std::size_t read_some(std::span<char> room) const {
     std::size_t done = 0;
     while (done < room.size()) {
@@ -70,7 +70,7 @@ private:
 std::string read_text(const fs::path& path) {
   const InputFile file(path);
   std::string text;
-  // One byte more than the file has, so that its end is seen without another round.
+  // One byte more than the file has, to see its end without another read.
   for (std::size_t room = file.size_hint() + 1;; room = kReadBlock) {
     const std::size_t before = text.size();
     text.resize(before + room);
@@ -129,14 +129,13 @@ std::vector<fs::path> places_of_configuration(const fs::path& program, const std
 
 namespace {
 
-// Its mistakes as a configuration would not say what it is.
+// Its errors as a configuration would be misleading.
 void refuse_what_is_none(const fs::path& place, const fs::path& program, const Texts& texts) {
   const FileKind kind = kind_of_text(texts.read(place));
   if (kind == FileKind::other || kind == FileKind::configuration) return;
   throw Failure(Exit::program,
-                fmt::format("{} is {}, and was taken for the configuration of {} because of its "
-                            "name: give it another name, or name the configuration with "
-                            "--config FILE",
+                fmt::format("{} is {}, but its name makes it the configuration of {}: rename it, "
+                            "or name the configuration with --config FILE",
                             place.string(), describe(kind), program.string()));
 }
 

@@ -1,4 +1,4 @@
-// Files: whole, with messages that name them.
+// Reads whole files. Messages name the file.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,15 @@ namespace robosync::tool {
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::byte> read_bytes(const std::filesystem::path& path);
 
-// For what can be made again, of this user; empty when there is no such place. It may have to be created.
+// This user's cache folder; empty if there is none. It may not exist yet.
 [[nodiscard]] std::filesystem::path cache_folder();
 
-// Does `work` with each file. One that it throws a Failure for does not silence the others: that is said at once, and
-// the worst exit of all is given.
+// Calls `work` for each file. A Failure that it throws is printed immediately and does not stop the others. Returns
+// the worst exit code.
 [[nodiscard]] Exit for_each_file(const std::vector<std::string>& files,
                                  const std::function<void(const std::string&)>& work);
 
-// Where programs and configurations are read: the disk, unless somebody has newer texts (lsp/).
+// Where programs and configurations are read from: the disk, unless an editor has newer texts (lsp/).
 class Texts {
 public:
   Texts() = default;
@@ -41,7 +41,7 @@ public:
     const std::filesystem::path& program, const std::string& config);
 
 // `config` if it is not empty, else STEM.json beside `program`, else robot.json beside it. Throws
-// Failure (outside) when there is none, (program) when what has that name is a scenario or a trace.
+// Failure (outside) if there is none, (program) if the file with that name is a scenario or a trace.
 [[nodiscard]] std::filesystem::path find_configuration(const std::filesystem::path& program,
                                                        const std::string& config,
                                                        const Texts& texts = Texts());

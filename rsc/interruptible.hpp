@@ -1,12 +1,11 @@
-// SIGINT and SIGTERM (Ctrl-C) end what is being waited for instead of the program: it then puts in order what it has begun, and
-// its exit code is that of a good end.
+// SIGINT (Ctrl-C) and SIGTERM end the current wait instead of the program, which then cleans up and exits normally.
 #pragma once
 
 #include <csignal>
 
 namespace robosync::tool {
 
-// While it lives. One at a time.
+// Takes effect while the object exists. One at a time.
 class Interruptible {
 public:
   Interruptible() {

@@ -1,4 +1,4 @@
-// By the functions that the board itself and `rsc check --timing` use.
+// Uses the same functions as the board and `rsc check --timing`.
 #include "rsc/judge.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void judge_memory(const vm::Image& image, const policy::BoardMemory& board,
       .helps("leave out what takes most, or name a board with more memory in robot.json (`board`)");
 }
 
-// Shows the rules that cost most in a step, the first one as the place of the mistake.
+// Labels the rules that cost most in a step; the first one is the primary label.
 void label_rules(Diagnostic& report, const vm::Image& image,
                  const std::vector<compiler::Span>& places) {
   bool primary = true;
@@ -76,22 +76,22 @@ std::string ms_text(std::uint32_t us) {
 
 Overload overload_of_bus(const vm::Image& image, const analysis::BusLoad& load) {
   Overload overload{
-      fmt::format("all that is asked of I2C bus {} at once takes it {}, and there are {}", load.bus,
-                  ms_text(load.us), ms_text(policy::kBusWindowUs)),
-      {"leave out channels or sensors of this bus"}};
+      fmt::format("I2C bus {} needs {} for all that may be asked of it together, and has {}",
+                  load.bus, ms_text(load.us), ms_text(policy::kBusWindowUs)),
+      {"leave out channels or sensors on this bus"}};
   if (load.shares.size() == 1) return overload;
   std::vector<std::string> parts;
   for (const auto& [sensor, us] : load.shares)
     parts.push_back(fmt::format("{} {}", image.string(image.sensors[sensor].name), ms_text(us)));
   overload.why.insert(
       overload.why.begin(),
-      fmt::format("sensors are asked together at the start, and whenever their periods meet: {}",
+      fmt::format("the sensors are read together at the start, and whenever their periods meet: {}",
                   fmt::join(parts, ", ")));
   return overload;
 }
 
-// Shows what robot.json says of its sensors, the one that takes most as the place of the mistake. A display and a servo chip are
-// none of those.
+// Labels the bus's sensors in robot.json; the one that takes most is the primary label. Displays and servo chips are not among
+// them.
 void label_sensors(Diagnostic& report, const vm::Image& image, const analysis::BusLoad& load,
                    const std::vector<compiler::SensorConfig>& sensors) {
   const auto most = std::ranges::max(load.shares, {}, &analysis::BusLoad::Share::us);
@@ -146,8 +146,8 @@ void judge_time(const Program& program, const std::string& name) {
                                           : overload_of_bus(image, buses.front());
   if (overload.what.empty()) return;
   throw Failure(Exit::program,
-                fmt::format("{}: {}{}\n  {}\n  --anyway uploads it nevertheless", name,
-                            kCannotKeepUp, overload.what, fmt::join(overload.why, "\n  ")));
+                fmt::format("{}: {}{}\n  {}\n  --anyway uploads it anyway", name, kCannotKeepUp,
+                            overload.what, fmt::join(overload.why, "\n  ")));
 }
 
 }  // namespace robosync::tool

@@ -1,4 +1,4 @@
-// What a board would refuse, said before it does.
+// Reports what a board would refuse, before it does.
 #pragma once
 
 #include "compiler/compiler.hpp"
@@ -6,7 +6,7 @@
 
 namespace robosync::tool {
 
-// Adds the errors of a program that has none for the board that its robot.json names.
+// For a program without errors: adds an error for whatever its board would refuse.
 void judge(compiler::Result& result, Judged judged);
 
 // Throws Failure (program) when the board cannot keep up with `program`, called `name`.

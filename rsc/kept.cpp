@@ -28,7 +28,7 @@ constexpr std::size_t kNotInImage = static_cast<std::size_t>(-1);
   throw Failure(Exit::outside, fmt::format("{}: {}; nothing was changed", file, message));
 }
 
-// The entries of a file that this has written, or a person in its place.
+// The entries of a file written by rsc, or by hand.
 Json entries_of(const std::string& text, const std::string& file) {
   const Json whole = Json::parse(text, nullptr, false);
   const bool good =
@@ -38,7 +38,7 @@ Json entries_of(const std::string& text, const std::string& file) {
     for (const auto& [name, value] : whole[kKey].items())
       texts = texts && (value.is_string() || value.is_number());
   if (!texts)
-    fail(file, "this is no file of kept numbers: move it away, or name another with --kept");
+    fail(file, "this is not a file of kept numbers: move it away, or name another with --kept");
   return whole[kKey];
 }
 
@@ -79,7 +79,7 @@ void Kept::read() {
       begin(variable, entry, value.is_string() ? value.get<std::string>() : value.dump());
   }
   if (!others.empty())
-    std::cerr << fmt::format("note: {} keeps {} too, which the program does not; it stays there\n",
+    std::cerr << fmt::format("note: {} also keeps {}, which the program does not; it stays there\n",
                              file_, others);
 }
 
@@ -89,10 +89,11 @@ void Kept::begin(std::size_t variable, const std::string& entry, const std::stri
     values_[variable] = parse_quantity(text, program_.image().variables[variable].dimension,
                                        unit != nullptr ? unit->spelling : std::string_view());
   } catch (const std::invalid_argument& error) {
-    fail(file_, fmt::format("`{}`: {}; give the REMEMBER another name, or begin anew with --fresh",
-                            entry, error.what()));
+    fail(file_,
+         fmt::format("`{}`: {}; give the REMEMBER another name, or start afresh with --fresh",
+                     entry, error.what()));
   }
-  std::cerr << fmt::format("note: {} begins with {}, as {} has it\n", entry,
+  std::cerr << fmt::format("note: {} starts at {}, from {}\n", entry,
                            shown(variable, values_[variable]), file_);
 }
 
@@ -103,7 +104,7 @@ const compiler::Unit* Kept::unit_of(std::size_t variable) const {
   return written == units.end() ? nullptr : written->second;
 }
 
-// In the unit of the program, if that says it exactly.
+// In the program's unit, if that is exact.
 std::string Kept::shown(std::size_t variable, vm::Value value) const {
   const vm::Variable& record = program_.image().variables[variable];
   if (const compiler::Unit* const unit = unit_of(variable); unit != nullptr) {
@@ -113,7 +114,7 @@ std::string Kept::shown(std::size_t variable, vm::Value value) const {
   return format_quantity(value, record.dimension);
 }
 
-// Its name in the file, which may be in another case there.
+// Its name as written in the file, where the case may differ.
 std::string Kept::entry_of(std::size_t variable) const {
   for (const auto& [entry, value] : entries_.items())
     if (find_kept(program_.image(), entry) == variable) return entry;

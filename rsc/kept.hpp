@@ -1,7 +1,7 @@
-// What `rsc run` keeps of a program's KEPT numbers from one run to the next, in a file that a person can read:
+// Stores a program's KEPT numbers between runs of `rsc run`, in a file that people can read:
 //   {"kept": {"visits": "3", "nearest": "35.5cm"}}
-// May assume nothing of the file. Promises that one that is not such a file is never written to, and that numbers of
-// other programs stay in it.
+// The file is not trusted. A file of another kind is never written to, and numbers of other programs stay in the
+// file.
 #pragma once
 
 #include <cstddef>
@@ -18,23 +18,23 @@ namespace robosync::tool {
 
 class Kept {
 public:
-  // `file`: empty: STEM.kept.json beside the program, which is called `name`. `fresh`: the numbers begin as
-  // written. Reads nothing when nothing is KEPT. Throws Failure (outside) when the file is another one,
-  // or keeps a number in another dimension.
+  // `file`: if empty, STEM.kept.json next to the program `name`. `fresh`: the numbers start as written in the
+  // program. Does not read the file if the program keeps nothing. Throws Failure (outside) if the file is of another
+  // kind, or has a number in another dimension.
   Kept(const Program& program, const std::string& name, const std::string& file, bool fresh);
 
   const std::string& file() const { return file_; }
-  // Puts the numbers into an image of the program, as if they were what it begins with.
+  // Writes the numbers into an image of the program as its initial values.
   void put_into(std::vector<std::byte>& image) const;
-  // Looks at what the program does.
+  // Follows the values as the program runs.
   void see(const link::Event& event);
-  // Writes the numbers down. Throws Failure (outside).
+  // Writes the numbers to the file. Throws Failure (outside).
   void write();
 
 private:
   void read();
   void begin(std::size_t variable, const std::string& entry, const std::string& text);
-  // In which the program writes the number; null: that is not known.
+  // The unit in which the program writes the number; null: not known.
   [[nodiscard]] const compiler::Unit* unit_of(std::size_t variable) const;
   [[nodiscard]] std::string shown(std::size_t variable, vm::Value value) const;
   [[nodiscard]] std::string entry_of(std::size_t variable) const;

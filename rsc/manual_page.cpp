@@ -1,4 +1,4 @@
-// rsc(1), made from what `rsc help` shows.
+// rsc(1), generated from the same texts as `rsc help`.
 #include <string>
 #include <string_view>
 
@@ -10,7 +10,7 @@
 namespace robosync::tool {
 namespace {
 
-// A minus that may be copied, and no line that roff takes for a request.
+// A minus that can be copied, and no line that roff reads as a request.
 std::string in_roff(std::string_view text) {
   const bool request = text.starts_with('.') || text.starts_with('\'');
   return (request ? "\\&" : "") + escaped(text, {{'\\', "\\e"}, {'-', "\\-"}});
@@ -30,11 +30,16 @@ std::string option_text(const OptionUsage& option) {
 
 std::string manual_page(const std::vector<VerbUsage>& verbs) {
   std::string text = fmt::format(
-      ".TH RSC 1 \"\" \"RoboSync {}\"\n.SH NAME\nrsc \\- gives a small robot its behaviour\n"
-      ".SH SYNOPSIS\n.B rsc\n.I VERB\n[\\fIOPTIONS\\fR]\n"
-      ".SH DESCRIPTION\nChecks, compiles, runs and uploads programs in RSL, the language in which "
-      "a robot is "
-      "told what to do when. \\fBrsc help\\fR \\fIVERB\\fR shows what follows here for one verb.\n"
+      ".TH RSC 1 \"\" \"RoboSync {}\"\n"
+      ".SH NAME\n"
+      "rsc \\- gives a small robot its behaviour\n"
+      ".SH SYNOPSIS\n"
+      ".B rsc\n"
+      ".I VERB\n"
+      "[\\fIOPTIONS\\fR]\n"
+      ".SH DESCRIPTION\n"
+      "Checks, compiles, runs and uploads programs in RSL, the language that tells a robot what to "
+      "do and when. \\fBrsc help\\fR \\fIVERB\\fR shows the part of this page about one verb.\n"
       ".SH VERBS\n",
       ROBOSYNC_VERSION);
   for (const VerbUsage& verb : verbs) {

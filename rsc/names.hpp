@@ -1,4 +1,4 @@
-// Names of what an image only numbers.
+// Names for what an image only numbers.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace robosync::tool {
 
-// As it stands in vm/drivers.def.
+// The name in vm/drivers.def.
 [[nodiscard]] constexpr std::string_view driver_name(vm::DriverId driver) {
   constexpr std::array<std::string_view, static_cast<std::size_t>(vm::DriverId::count_)> kNames = {
 #define SENSOR_DRIVER(name, ...) #name,
@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleK
   return {name.begin(), std::find(name.begin(), name.end(), '\0')};
 }
 
-// A program's name as it is shown.
+// A program's hash, as shown to people.
 [[nodiscard]] inline std::string text_of(const link::ProgramHash& hash) {
   return fmt::format("{:02x}", fmt::join(hash, ""));
 }

@@ -1,4 +1,4 @@
-// May assume POSIX. Promises that what is there already is never left half written.
+// May assume POSIX. Promises that an existing file is never left half written.
 #include "rsc/output.hpp"
 
 #include <atomic>
@@ -64,8 +64,8 @@ private:
   int number_;
 };
 
-// An open file that was not there, or -1. `name` becomes its name: `target` and what no other thread or process adds to it. A
-// process that was killed may have left such a file, and another one now have its number.
+// Opens a new file; -1 if that fails. `name` becomes its name: `target` with a suffix that no other thread or process uses. A
+// killed process may have left such a file, and its process number may be in use again.
 int create_beside(const fs::path& target, mode_t mode, std::string& name) {
   static std::atomic<unsigned> count = 0;
   constexpr int kAttempts = 100;
@@ -78,10 +78,10 @@ int create_beside(const fs::path& target, mode_t mode, std::string& name) {
   return file;
 }
 
-// A temporary file beside the one to be written. Gone unless it was renamed.
+// A temporary file next to the target. Removed unless it was renamed.
 class Temporary {
 public:
-  // `mode` but for the umask of the process, as of every new file.
+  // `mode`, subject to the umask, as for every new file.
   Temporary(const fs::path& target, mode_t mode)
       : target_(target), file_(create_beside(target, mode, name_)) {
     if (file_.number() < 0) fail(target_, errno);
@@ -94,7 +94,7 @@ public:
 
   void write(std::span<const std::byte> bytes) const { write_all(file_.number(), bytes, target_); }
 
-  // Whatever the umask says.
+  // Regardless of the umask.
   void set_mode(mode_t mode) const {
     if (fchmod(file_.number(), mode) != 0) fail(target_, errno);
   }
@@ -112,7 +112,7 @@ private:
   bool renamed_ = false;
 };
 
-// /dev/stdout and its like are links of the system, and may lead to an ordinary file.
+// /dev/stdout and the like are system links that may lead to an ordinary file.
 bool is_link_of_system(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return false;
@@ -121,7 +121,7 @@ bool is_link_of_system(const fs::path& path) {
   return top != folder.end() && (*top == "dev" || *top == "proc");
 }
 
-// What is no ordinary file, or is reached by a link that must stay.
+// Not an ordinary file, or reached through a link that must stay.
 bool is_written_through(const fs::path& path, const std::optional<struct stat>& facts) {
   std::error_code error;
   if (!facts) return fs::is_symlink(path, error);
@@ -130,7 +130,7 @@ bool is_written_through(const fs::path& path, const std::optional<struct stat>& 
 
 void write_through(const fs::path& path, std::span<const std::byte> bytes) {
   std::cout.flush();
-  if (is_stdout(path)) {  // opened again, an ordinary file would be written from its beginning
+  if (is_stdout(path)) {  // reopening an ordinary file would overwrite it from the start
     write_all(STDOUT_FILENO, bytes, path);
     return;
   }
@@ -142,7 +142,7 @@ void write_through(const fs::path& path, std::span<const std::byte> bytes) {
                 fmt::format("{} {}; nothing was written: name another file", path.string(), why));
 }
 
-// Nobody would know why all programs beside it are wrong from then on.
+// Otherwise all programs next to it would fail for no visible reason.
 void refuse_name_of_configuration(const fs::path& path) {
   std::error_code error;
   constexpr const char* kWhy = "would be taken for the configuration of {}, because of its name";
@@ -153,12 +153,12 @@ void refuse_name_of_configuration(const fs::path& path) {
   if (fs::exists(program, error)) refuse(path, fmt::format(kWhy, program.string()));
 }
 
-// What rsc writes can be written again.
+// What rsc writes may be overwritten.
 bool is_written_by_people(FileKind kind) {
   return kind != FileKind::other && kind != FileKind::trace && kind != FileKind::perfetto;
 }
 
-// Also of those that are not there yet.
+// Works for paths that do not exist yet.
 fs::path whole_name(const std::string& path) {
   std::error_code error;
   return fs::weakly_canonical(fs::absolute(path, error), error);
@@ -173,7 +173,7 @@ void check_outputs(const std::vector<std::string>& paths, const std::vector<std:
     for (std::size_t other = 0; other < i; ++other)
       if (!paths[other].empty() && whole_name(paths[other]) == whole_name(paths[i]) &&
           !is_written_through(paths[i], facts_of(paths[i])))
-        refuse(paths[i], "is named for two outputs");
+        refuse(paths[i], "is given for two outputs");
   }
 }
 
@@ -181,7 +181,7 @@ void check_output(const fs::path& path, const std::vector<std::string>& inputs) 
   const auto facts = facts_of(path);
   if (facts && S_ISDIR(facts->st_mode)) fail(path, EISDIR);
   if (facts && !S_ISREG(facts->st_mode)) return;
-  if (path == "-") refuse(path, "is no output, /dev/stdout is");
+  if (path == "-") refuse(path, "is not an output, /dev/stdout is");
   if (!facts) {
     refuse_name_of_configuration(path);
     return;
@@ -198,17 +198,17 @@ void check_output(const fs::path& path, const std::vector<std::string>& inputs) 
   }
   refuse_name_of_configuration(path);
   if (const FileKind kind = kind_of_file(path); is_written_by_people(kind))
-    refuse(path, fmt::format("is there already, and is {}", describe(kind)));
+    refuse(path, fmt::format("already exists, and is {}", describe(kind)));
 }
 
 bool is_stdout(const fs::path& path) {
   const auto facts = facts_of(path);
   struct stat out {};
   if (!facts || fstat(STDOUT_FILENO, &out) != 0 || !same_file(*facts, out)) return false;
-  return !S_ISCHR(out.st_mode) || isatty(STDOUT_FILENO) == 1;  // /dev/null shows nothing
+  return !S_ISCHR(out.st_mode) || isatty(STDOUT_FILENO) == 1;  // not /dev/null
 }
 
-// A pipe or a terminal has nothing to wait for.
+// fsync() fails on pipes and terminals, which need none.
 void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
   const File file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFile));
   if (file.number() < 0) fail(path, errno);

@@ -1,4 +1,4 @@
-// May assume nothing of the files. Promises that an image that leaves this file is verified.
+// The files are not trusted. Promises that every image it returns is verified.
 #include "rsc/program.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-// By name or by content, so that a damaged image is refused as an image and not read as a program.
+// By name or by content, so that a damaged image is rejected as an image and not read as a program.
 bool is_image(const std::string& file, std::span<const std::byte> bytes) {
   const std::string extension = std::filesystem::path(file).extension().string();
   std::uint32_t magic = 0;
@@ -169,7 +169,7 @@ Program::Program(std::vector<std::byte> bytes, const std::string& name,
     verdict = {vm::Refusal::wrong_name, vm::Section::header, 0};
   if (verdict.ok()) verdict = algorithms::judge(image_);
   if (verdict.ok()) return;
-  vm::Image view;  // what is wrong may stand between good source lines
+  vm::Image view;  // an unverified image may still have valid source lines
   const bool sections_fit = vm::view_image(bytes_, view);
   const std::uint16_t line = sections_fit ? source_line(view, verdict.section, verdict.index) : 0;
   throw Failure(Exit::program, fmt::format("{}: {}", name, describe_refusal(verdict, line)));
@@ -184,10 +184,10 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
     Program program(std::move(bytes), file, board_memory(), {{file}, {}, {}, {}});
-    if (options.judged == Judged::by_time) judge_time(program, file);  // its board knows its memory
+    if (options.judged == Judged::by_time) judge_time(program, file);  // the board checks memory
     return program;
   }
-  bool has_modules = false;  // then a line number may be one of another file
+  bool has_modules = false;  // then a line number may refer to another file
   const Texts texts;
   const auto modules = [&](const std::string& user, const std::string& name) {
     has_modules = true;
@@ -204,7 +204,7 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   return {std::move(result.image), file, memory_of(result.board), std::move(origin)};
 }
 
-// It is the last section, so the image is cut there and the header told.
+// It is the last section, so the image is cut there and the header updated.
 std::vector<std::byte> without_source_lines(const Program& program) {
   vm::ImageHeader header = *program.image().header;
   const std::size_t length = program.bytes().size() - program.image().source_lines.size_bytes();

@@ -1,4 +1,4 @@
-// The compiler's units (compiler/config/units.def) are the only ones.
+// Uses the compiler's units (compiler/config/units.def).
 #include "rsc/quantity.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-// "; write it as 20cm" for a number alone whose unit is certain: its own, or the only one that there is. Else the units
-// that fit, and no number: 20 may have been meant in any of them.
+// "; write it as 20cm" for a bare number whose unit is certain: its own, or the only one possible. Else the units that
+// fit, without the number: 20 could be in any of them.
 std::string way_out(std::string_view number, vm::Dimension dimension, std::string_view own) {
   std::vector<std::string_view> fitting;
   for (const compiler::Unit& unit : compiler::units())
@@ -48,7 +48,8 @@ vm::Value parse_quantity(std::string_view text, vm::Dimension dimension, std::st
   if (!number) throw std::invalid_argument(fmt::format("`{}` is not a number with a unit", text));
   const std::string_view spelling = trim(whole.substr(digits));
   if (spelling.starts_with(','))
-    throw std::invalid_argument(fmt::format("`{}` has a comma: a decimal point is a point", text));
+    throw std::invalid_argument(
+        fmt::format("`{}` has a comma: write the decimal point as a point", text));
   const compiler::Unit* const unit = compiler::find_unit(spelling);
   if (unit == nullptr) throw std::invalid_argument(fmt::format("there is no unit `{}`", spelling));
   if (unit->dimension != dimension) {

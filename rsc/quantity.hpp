@@ -9,9 +9,9 @@
 
 namespace robosync::tool {
 
-// Throws std::invalid_argument with what is wrong: not a number, no such unit, a unit of another
-// dimension, or none where one is needed. `own`: the unit that robot.json or the program writes what is measured in, if
-// that is known, which a number without one may be offered.
+// Throws std::invalid_argument with the reason: not a number, no such unit, a unit of another dimension, or none where
+// one is needed. `own`: the unit that robot.json or the program uses here, if known; the message suggests it for a
+// number without a unit.
 [[nodiscard]] vm::Value parse_quantity(std::string_view text, vm::Dimension dimension,
                                        std::string_view own = {});
 

@@ -1,4 +1,4 @@
-// Response times as a table for people, as JSON for programs, and as the reason of a refusal.
+// Response times as a table, as JSON, and as the reason for a refusal.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -42,15 +42,15 @@ std::string share_text(const PathTiming& path, const ResponseTime& response) {
   return fmt::format("{:>8.1f} %", kPercent * path.share(response));
 }
 
-// Where a WAIT is the reason, no sensor is.
+// If a WAIT is the cause, sensors are not.
 std::string mend_of(const ResponseReport& report) {
   if (report.short_wait == analysis::TaskSet::kNoWait)
     return "give a sensor a lower rate in robot.json, let rules run less often or fewer read it, "
            "or "
            "make those that cost most cheaper";
   return fmt::format(
-      "{} may be 0 s, as far as can be said here: write a number, RANDOM of numbers or MAX(1s, a "
-      "variable), or a WAIT 1s before it",
+      "{} may be 0 s: write a number, RANDOM of numbers or MAX(1s, a variable), or a WAIT 1s "
+      "before it",
       report.short_wait == 0 ? "a WAIT" : fmt::format("the WAIT at line {}", report.short_wait));
 }
 
@@ -84,7 +84,7 @@ std::string response_text(const ResponseReport& report) {
       text += fmt::format("        {:<36}{}\n", "  … others adapted to P_max",
                           time_text(report, path.adapted));
   }
-  return text + fmt::format("        {:<36}{:>48.1f} %\n", "the processor, all of it",
+  return text + fmt::format("        {:<36}{:>48.1f} %\n", "processor, in total",
                             kPercent * report.utilization);
 }
 
@@ -107,14 +107,14 @@ Json response_json(const ResponseReport& report) {
   return object;
 }
 
-// The processor as a whole, or else the first path that is late; a sensor's other paths are as late.
+// The processor as a whole, or else the first late path; a sensor's other paths are just as late.
 Overload overload_of(const ResponseReport& report) {
   if (report.schedulable()) return {};
   Overload overload;
   if (report.utilization > 1) {
     overload.what =
         fmt::format("all of it takes {:.0f} % of the processor", kPercent * report.utilization);
-    overload.why.push_back(fmt::format("of the {} instructions of a millisecond it takes {}",
+    overload.why.push_back(fmt::format("of the {} instructions in a millisecond it takes {}",
                                        report.instructions_per_ms, first_of(report.loads)));
   } else {
     const PathTiming& path =

@@ -1,5 +1,4 @@
-// See saved_files.hpp. Editors write a file, or another one in its place; its
-// time or its size tells both.
+// See saved_files.hpp. Editors overwrite a file or replace it; its time or size shows both.
 #include "rsc/saved_files.hpp"
 
 #include <system_error>
@@ -18,7 +17,7 @@ std::vector<std::string> files_of_program(const std::string& file, const Compile
     for (const std::string& name : names_of(compile_file(file, how).sources))
       files.push_back(name);
   } catch (const Failure&) {
-    // One of them is missing, or the program is an image.
+    // A file is missing, or the program is an image.
   }
   return files;
 }

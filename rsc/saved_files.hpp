@@ -1,4 +1,4 @@
-// Files that somebody edits: has one been saved?
+// Detects that one of several edited files has been saved.
 #pragma once
 
 #include <chrono>
@@ -13,18 +13,16 @@
 
 namespace robosync::tool {
 
-// All that a program is made of, as far as it can be read: its modules and its
-// configuration, too.
+// All files of a program that can be read, with its modules and its configuration.
 [[nodiscard]] std::vector<std::string> files_of_program(const std::string& file,
                                                         const CompileOptions& how);
 
 class SavedFiles {
 public:
-  // From here on these are looked at. A file that is not there yet counts as
-  // saved when it comes.
+  // Watches these files from now on. A file that does not exist yet counts as saved when it appears.
   void look_at(const std::vector<std::string>& files);
-  // Since it was asked last, or look_at(). Ask often: it is said once nothing has changed for a moment, since an editor may
-  // write a file in pieces.
+  // True if a file was saved since the last call or look_at(). Call it often: it reports a change once nothing has changed
+  // for a moment, since an editor may write a file in pieces.
   [[nodiscard]] bool changed();
 
 private:
@@ -37,7 +35,7 @@ private:
 
   std::map<std::string, Facts> files_;
   std::optional<std::chrono::steady_clock::time_point>
-      changed_;  // the last time; nothing: it is said
+      changed_;  // when a file last changed; nothing: reported
 };
 
 }  // namespace robosync::tool

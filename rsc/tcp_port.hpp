@@ -1,4 +1,4 @@
-// The number of a port, as a person writes it behind a host.
+// Parses a TCP port number as written after a host.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace robosync::tool {
 
-// 1 to 65535. getaddrinfo() takes a larger number for another port.
+// 1 to 65535. getaddrinfo() would take a larger number for another port.
 [[nodiscard]] std::optional<std::uint16_t> tcp_port(std::string_view text);
 
 }  // namespace robosync::tool

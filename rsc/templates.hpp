@@ -1,4 +1,4 @@
-// Robots to begin with (templates.txt), their files with them, so that the tool needs nothing beside itself.
+// The template robots (templates.txt) with their files, embedded so that the tool needs no other files.
 #pragma once
 
 #include <span>

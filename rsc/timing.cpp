@@ -1,4 +1,4 @@
-// May assume a verified image, so every index in it is good.
+// May assume a verified image, so every index in it is valid.
 #include "rsc/timing.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ BehaviorTiming behavior_timing(const vm::Image& image, const vm::Behavior& behav
   return timing;
 }
 
-// The board has no use for source lines: rsc upload leaves them out.
+// Without source lines: rsc upload leaves them out.
 std::vector<SectionSize> uploaded_sections(const vm::Image& image) {
   std::vector<SectionSize> sizes = section_sizes(image);
   std::erase_if(sizes,
@@ -61,7 +61,7 @@ std::size_t sum(const Record& records, SizeOf size_of) {
   return all;
 }
 
-// By what takes it, and all together.
+// By consumer, and in total.
 std::vector<Share> memory_of(const policy::Needs& needs, const policy::BoardMemory& board) {
   std::vector<Share> memory;
   const auto shares = policy::shares_of(needs);

@@ -1,7 +1,7 @@
-// What a program costs on the board: instructions of a step, rule by rule, and memory.
+// What a program costs on the board: instructions per step, rule by rule, and memory.
 //
-// Instructions are worked out from the image by the verifier's own pass (vm/cost.hpp); they are not
-// cycles. Images must be verified.
+// The verifier's own pass counts the instructions in the image (vm/cost.hpp); they are not cycles.
+// Images must be verified.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ struct RuleTiming {
   std::uint16_t line = 0;
   vm::RuleCost cost;
   bool else_is_worst = false;
-  std::uint16_t response_line = 0;  // of the worse response; 0: it has none, or not known
+  std::uint16_t response_line = 0;  // of the worse response; 0: none, or not known
 };
 
 struct BehaviorTiming {
@@ -66,7 +66,7 @@ struct Timing {
 // The response times: a table, whole lines, and the same as JSON.
 [[nodiscard]] std::string response_text(const analysis::ResponseReport& report);
 [[nodiscard]] nlohmann::ordered_json response_json(const analysis::ResponseReport& report);
-// Why the board cannot keep up with a program: what is too much; then what costs most, and the mend.
+// Why the board cannot keep up with a program: what is too much, then what costs most, and how to fix it.
 struct Overload {
   std::string what;  // empty: it can
   std::vector<std::string> why;

@@ -1,4 +1,4 @@
-// The timing as a table for people, and as JSON for programs: the same figures.
+// The timing as a table and as JSON, with the same figures.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -41,7 +41,7 @@ std::string steps_text(const Timing& timing) {
     for (const RuleTiming& rule : behavior.rules)
       text += rule_line(rule);
   }
-  return text + fmt::format("        {:<60}{:>8}\n", "step, all of them", timing.step.used);
+  return text + fmt::format("        {:<60}{:>8}\n", "step, in total", timing.step.used);
 }
 
 std::string threads_text(const Timing& timing) {
@@ -108,7 +108,7 @@ std::string timing_text(const Timing& timing, const std::string& file) {
   std::string text = fmt::format(
       "{}: worst case in executed Cortex-M4 instructions of bytecode (not cycles)\n\n", file);
   text += steps_text(timing) + "\n" + threads_text(timing);
-  text += fmt::format("        On each stack stand {} bytes of the bytecode machine.\n\n",
+  text += fmt::format("        Each stack holds {} bytes of the bytecode machine.\n\n",
                       vm::kMachineBytes);
   text += sections_text(timing) + "\n";
   text += fmt::format("        {:<16}{:>8}    {:>6} {:<14}{:>8}\n", "the board", "taken", "has", "",

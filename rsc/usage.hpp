@@ -1,4 +1,4 @@
-// What can be written on the command line, as help shows it: for the shells' completion and the manual page.
+// The command line as help shows it, for shell completion and the manual page.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 namespace robosync::tool {
 
 struct OptionUsage {
-  std::vector<std::string> names;  // "--format", "-o"; empty: by its place
+  std::vector<std::string> names;  // "--format", "-o"; empty: positional
   std::string value;               // "FILE", "human|json"; empty: a flag
   std::string description;
 };
@@ -23,7 +23,7 @@ struct VerbUsage {
 [[nodiscard]] std::string bash_completion(const std::vector<VerbUsage>& verbs);
 [[nodiscard]] std::string fish_completion(const std::vector<VerbUsage>& verbs);
 [[nodiscard]] std::string zsh_completion(const std::vector<VerbUsage>& verbs);
-// In roff, section 1.
+// In roff, for section 1.
 [[nodiscard]] std::string manual_page(const std::vector<VerbUsage>& verbs);
 
 }  // namespace robosync::tool

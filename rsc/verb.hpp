@@ -8,7 +8,7 @@
 
 namespace robosync::tool {
 
-// Declares the verb's options, and what it does.
+// Declares the verb's options and its action.
 #define VERB(name, summary, example) void add_##name(Options& options);
 #include "rsc/verbs.def"
 #undef VERB

@@ -29,13 +29,12 @@ void add_port_option(Options& options, std::string& port) {
 void add_ports_option(Options& options, std::vector<std::string>& ports) {
   options.options(
       "--port", "PORT", [&ports](const std::string& port) { ports.push_back(port); },
-      std::string(kWhatAPortIs) + "; several times: all these robots at once",
-      Options::Need::required);
+      std::string(kWhatAPortIs) + "; repeat it for several robots", Options::Need::required);
 }
 
 void add_key_option(Options& options, std::string& key) {
   options.option("--key", "FILE", key,
-                 "key of the robot's owner; else robosync/key in the folder of your settings");
+                 "key of the robot's owner; else robosync/key in your config folder");
 }
 
 void add_config_option(Options& options, std::string& config) {
@@ -53,14 +52,14 @@ void add_seed_option(Options& options, std::uint32_t& seed) {
           throw std::invalid_argument("a seed is a whole number from 1 to " +
                                       std::to_string(compiler::kMaxSeed));
       },
-      "what RANDOM and PICK ONE begin with; else as robot.json says");
+      "seed of RANDOM and PICK ONE; else as robot.json says");
 }
 
 void add_color_option(Options& options) {
   options.choice(
       "--color", {"auto", "always", "never"},
       [](std::size_t index) { choose_color(static_cast<Color>(index)); },
-      "colour of messages: auto (default) on a terminal, and not with NO_COLOR");
+      "colour of messages: auto (default) on a terminal, unless NO_COLOR is set");
 }
 
 namespace {
@@ -81,10 +80,10 @@ void add_lint_option(Options& options, const std::string& name, compiler::LintLe
 
 void add_lint_options(Options& options, compiler::LintLevels& lints) {
   using compiler::LintLevel;
-  add_lint_option(options, "--allow", LintLevel::allow, lints, "say nothing of this lint (W0203)");
-  add_lint_option(options, "--warn", LintLevel::warn, lints, "make a warning of this lint");
+  add_lint_option(options, "--allow", LintLevel::allow, lints, "do not report this lint (W0203)");
+  add_lint_option(options, "--warn", LintLevel::warn, lints, "report this lint as a warning");
   add_lint_option(options, "--deny", LintLevel::deny, lints,
-                  "make an error of this lint; warnings: of all of them");
+                  "report this lint as an error; warnings: all of them");
 }
 
 }  // namespace
@@ -95,7 +94,7 @@ void add_compile_options(Options& options, CompileOptions& how) {
   add_lint_options(options, how.lints);
   options.choice(
       "-O", {"0", "1"}, [&how](std::size_t level) { how.optimize = level > 0; },
-      "1: optimise (default), 0: translate as it is written");
+      "1: optimise (default), 0: translate as written");
 }
 
 void add_duration_option(Options& options, const std::string& name,

@@ -15,14 +15,14 @@ namespace robosync::tool {
 
 void add_format_option(Options& options, Format& format);
 void add_port_option(Options& options, std::string& port);
-// --port, once or as often as there are robots.
+// --port, once, or once for each robot.
 void add_ports_option(Options& options, std::vector<std::string>& ports);
-// --key FILE, with which orders to a robot that has an owner are signed; empty when it is not given.
+// --key FILE, which signs orders to a robot that has an owner; empty if not given.
 void add_key_option(Options& options, std::string& key);
 void add_config_option(Options& options, std::string& config);
-// --seed N, of the random numbers; 0 when it is not given.
+// --seed N for the random numbers; 0 if not given.
 void add_seed_option(Options& options, std::uint32_t& seed);
-// --color, of what is said on stderr.
+// --color, for stderr.
 void add_color_option(Options& options);
 // --config, --color, --allow, --warn and --deny, and -O0 or -O1.
 void add_compile_options(Options& options, CompileOptions& how);

@@ -1,9 +1,9 @@
-// The runtime of one robot: the safety thread, and the program's threads and layers, which are made
-// from an image. The same on the board (boards/common/main.cpp) and on the host (sim/simulator.cpp).
+// The runtime of one robot: the safety thread, and the program's threads and layers, which are built
+// from an image. It is the same on the board (boards/common/main.cpp) and on the host (sim/simulator.cpp).
 //
 // The memory of a program is in the arena, laid out anew at each activation (layers/memory.hpp). The
-// object itself holds what exists without a program, such as the kernel's and safety's control blocks,
-// and what is closed to the behaviours' threads.
+// object itself holds the parts that exist without a program, such as the kernel's and safety's control
+// blocks, and those that the behaviours' threads may not access.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-# Shared by the scripts in this folder: says what is done, installs what is missing, builds.
+# Functions shared by the scripts in this folder: report progress, install missing packages, build.
 #
-# Sourced by bash scripts. Afterwards the working directory is the top of the repository.
+# Bash scripts source this. Afterwards the working directory is the top of the repository.
 # Exit codes are those of rsc: 2 wrong usage, 3 something outside is missing.
 
 set -euo pipefail
@@ -14,12 +14,11 @@ die() {
   exit "${2:-3}"
 }
 
-# The head comment of the script that runs, for --help.
+# Prints the head comment of the running script, for --help.
 usage() { sed -n '2,/^\. /{/^\. /d;s/^# \{0,1\}//;p}' "scripts/${0##*/}"; }
 
-# missing_packages [SECTION…]: the packages in these sections of packages.txt (all but [faces], [objects], [editor], [rates] and [fuzz], when none is
-# named)
-# that are not installed, one a line.
+# missing_packages [SECTION…]: prints the packages in these sections of packages.txt that are not installed, one a line. Default:
+# all sections except [faces], [objects], [editor], [rates] and [fuzz].
 missing_packages() {
   local package
   awk -v wanted=" $* " '/^\[/ { section = substr($1, 2, length($1) - 2); next }
@@ -29,8 +28,8 @@ missing_packages() {
   done
 }
 
-# install_missing [SECTION…]: installs what is missing, as root or through sudo; asks for nothing when there is
-# no terminal.
+# install_missing [SECTION…]: installs the missing packages, as root or through sudo; without a terminal it asks for
+# nothing.
 install_missing() {
   command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
     die "needs Debian 12 with apt-get; elsewhere, install what scripts/packages.txt lists"
@@ -52,8 +51,8 @@ install_missing() {
   "${apt[@]}" install -y --no-install-recommends $missing || die "could not install: $missing"
 }
 
-# build PRESET [TARGET…]: configures build/PRESET, and builds all of it or the targets. Quiet unless it fails.
-# What stands in `configuring` goes to cmake as well.
+# build PRESET [TARGET…]: configures build/PRESET and builds all of it, or only the targets. Quiet unless it fails.
+# The array `configuring` holds further arguments for cmake.
 configuring=()
 build() {
   local preset=$1 log=build/$1.log
@@ -64,7 +63,7 @@ build() {
   esac
   say "Building $preset (CMake preset; ${*:+only $*; }log: $log)"
   mkdir -p build
-  # One at a time: several robots may be started at once, and each looks first whether there is something to build.
+  # One build at a time: several robots may be started in parallel, and each first checks whether there is something to build.
   exec {building}>"build/$preset.lock"
   flock "$building"
   if ! { cmake --preset "$preset" "${configuring[@]}" && cmake --build --preset "$preset" ${*:+--target "$@"}; } \
@@ -75,14 +74,14 @@ build() {
   exec {building}>&-
 }
 
-# Builds rsc without its tests, whose libraries need not be there; where they are configured already, they stay.
+# Builds rsc without its tests, so that their libraries are not needed. If the tests are already configured, they stay.
 build_tool() {
   if ! grep -qs '^ROBOSYNC_TESTS:.*=ON' build/host/CMakeCache.txt; then configuring=(-D ROBOSYNC_TESTS=OFF); fi
   build host rsc
   configuring=()
 }
 
-# preset_of BOARD: `preset` is then the preset that builds its firmware, `firmware` the target, and `made` where it stands.
+# preset_of BOARD: sets `preset` to the preset that builds the board's firmware, `firmware` to the target, `made` to its folder.
 preset='' firmware='' made=''
 preset_of() {
   local reference of
@@ -95,8 +94,8 @@ preset_of() {
   [ -z "$of" ] || preset=$of firmware=robosync_firmware_$1 made=build/$of/$1
 }
 
-# unpack_emulator: what scripts/emulator says; `emulator` is then the program, and build/qemu-microbit-v2 the other one, unless
-# that cannot be made: then its message has said why.
+# unpack_emulator: does the work of scripts/emulator. Sets `emulator` to the program, and makes build/qemu-microbit-v2; if that
+# fails, a message says why.
 unpack_emulator() {
   newer_emulator
   local maker=scripts/python/microbit_emulator.py copy=build/qemu-microbit-v2
@@ -105,8 +104,8 @@ unpack_emulator() {
   /usr/bin/python3 $maker "$emulator" "$copy" || true
 }
 
-# newer_emulator: the first part of that. Package and sum are those of
-# https://deb.debian.org/debian/dists/bookworm-backports/main/binary-amd64/Packages.xz; it uses the libraries of the
+# newer_emulator: the first part of that. Package and checksum come from
+# https://deb.debian.org/debian/dists/bookworm-backports/main/binary-amd64/Packages.xz; the emulator uses the libraries of the
 # installed qemu-system-arm.
 emulator=
 newer_emulator() {
@@ -131,9 +130,9 @@ newer_emulator() {
   die "QEMU 10.0.2 could not be had: no mirror has ${pool##*/}"
 }
 
-# signature_sources: what scripts/signatures says; they are then in build/tinyssh. Pool and sum are those of
-# https://deb.debian.org/debian/dists/bookworm/main/source/Sources.xz; the archive is that of upstream, which Debian does not
-# change, so it stays the same while Debian 12 lives.
+# signature_sources: does the work of scripts/signatures: puts the sources into build/tinyssh. Path and checksum come from
+# https://deb.debian.org/debian/dists/bookworm/main/source/Sources.xz. The archive is the upstream one, which Debian does not
+# change, so it stays the same during the life of Debian 12.
 signature_sources() {
   [ ! -d build/tinyssh ] || return 0
   say "Getting the source package tinyssh, for Ed25519 on the board"
@@ -149,7 +148,7 @@ signature_sources() {
   rm "$archive"
 }
 
-# from_mirror PLACE SHA256 FILE: gets what stands at that place in Debian's archive, from the mirrors of this machine first.
+# from_mirror PLACE SHA256 FILE: downloads that path of Debian's archive, trying this machine's mirrors first.
 from_mirror() {
   local mirror log=$3.log
   for mirror in $(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 2>/dev/null | sort -u) \

@@ -82,6 +82,7 @@ Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
   flash.usb = require_text(fields, "usb", kWhat, diagnostics);
   flash.openocd = require_text(fields, "openocd", kWhat, diagnostics);
   flash.pyocd = require_text(fields, "pyocd", kWhat, diagnostics);
+  if (fields.find("dfu") != nullptr) flash.dfu = require_text(fields, "dfu", kWhat, diagnostics);
   if (const auto* drive = fields.require("drive", kWhat)) {
     Fields of_drive(*drive, Object::drive, diagnostics);
     flash.drive = require_text(of_drive, "label", "a drive", diagnostics);

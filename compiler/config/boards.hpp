@@ -46,6 +46,8 @@ struct Board {
     std::string drive_takes;  // the extension of files that the drive accepts
     std::string openocd;      // the scripts for it, separated by spaces
     std::string pyocd;        // its target name
+    // The USB id of the chip's boot loader and the address of its flash, separated by a space. Empty: the chip has no DFU.
+    std::string dfu;
   };
   std::optional<Flash> flash;
   struct Part {  // soldered to the board, so robot.json does not describe its wiring

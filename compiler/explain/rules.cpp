@@ -59,7 +59,8 @@ public:
                                    has_not_ ? "; NOT turns round what that gives" : ""));
     }
     if (modifiers.cooldown) {
-      say(kRuleIndent, fmt::format("After it has started, it does not start again for {}.",
+      say(kRuleIndent, fmt::format("After {} has started, {} does not start again for {}.",
+                                   has_else_ ? "a side" : "it", has_else_ ? "that side" : "it",
                                    number(*modifiers.cooldown)));
     }
     if (modifiers.restarting) {

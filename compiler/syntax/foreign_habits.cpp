@@ -22,7 +22,7 @@ public:
           &ForeignHabits::declared_in_block, &ForeignHabits::definition,
           &ForeignHabits::text_in_brackets, &ForeignHabits::set_with_sign,
           &ForeignHabits::assignment, &ForeignHabits::colon, &ForeignHabits::end_of_what,
-          &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
+          &ForeignHabits::negated_truth, &ForeignHabits::truth, &ForeignHabits::decimal_comma}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
@@ -351,6 +351,20 @@ private:
     const Span here = tokens_[stop_].span;
     report(Code::E0009, "END does not say what it ends", here).fix(here, "");
     return change(stop_, 1);
+  }
+
+  // `wave IS NOT TRUE`
+  std::optional<Edit> negated_truth() {
+    const bool is_true = is(stop_, Kinds::TRUE);
+    if (stop_ < 2 || (!is_true && !is(stop_, Kinds::FALSE)) || !is(stop_ - 1, Kinds::NOT) ||
+        !is(stop_ - 2, Kinds::IS))
+      return std::nullopt;
+    const Span both = span(stop_ - 1, stop_ + 1);
+    const std::string opposite = is_true ? "FALSE" : "TRUE";
+    report(Code::E0007,
+           "`IS NOT " + text(stop_, stop_ + 1) + "` is written `IS " + opposite + "` in RSL", both)
+        .fix(both, opposite);
+    return change(stop_ - 1, 2, {{is_true ? Kinds::FALSE : Kinds::TRUE, both}});
   }
 
   // `WHEN TRUE DO`

@@ -21,11 +21,9 @@ using Json = nlohmann::ordered_json;
 
 std::string root_of(const std::string& name) {
   if (topic_part(name) != name)
-    throw Failure(
-        Exit::usage,
-        fmt::format("`{}` cannot be a part of a topic, for which /, + and # mean something "
-                    "else: give the robot another --name",
-                    name));
+    throw Failure(Exit::usage, fmt::format("`{}` cannot be part of a topic, in which /, + and # "
+                                           "have a meaning: give the robot another --name",
+                                           name));
   return "robosync/" + name + "/";
 }
 
@@ -132,8 +130,8 @@ bool Bridge::work(Session* session) {
   return true;
 }
 
-// An earlier bridge may have left things of a program that runs no more, and of this one what nobody knows now. What is
-// published here comes behind all that.
+// An earlier bridge may have retained messages of another program, or outdated ones of this program. They are cleared;
+// this bridge's own messages arrive after them.
 void Bridge::see_what_was_left(const std::string& topic, const MqttMessage& message) {
   if (message.retained)
     mqtt_.clear(message.topic);
@@ -141,14 +139,14 @@ void Bridge::see_what_was_left(const std::string& topic, const MqttMessage& mess
     mqtt_.look_no_more();
 }
 
-// What lay there before would be obeyed at each start again.
+// Retained orders are refused: they would be obeyed again at each start.
 void Bridge::take(const MqttMessage& message, Session* session) {
   std::string topic = message.topic.substr(root_.size());
   if (!topic.starts_with(kDo)) return see_what_was_left(topic, message);
   topic = topic.substr(kDo.size());
   std::string why;
   try {
-    if (message.retained) throw std::invalid_argument("it was retained: publish it without");
+    if (message.retained) throw std::invalid_argument("it was retained: publish it without that");
     obey(topic, message.payload, session);
     return;
   } catch (const std::invalid_argument& error) {
@@ -163,8 +161,8 @@ void Bridge::take(const MqttMessage& message, Session* session) {
 void Bridge::obey(const std::string& topic, const std::string& payload, Session* session) {
   if (session == nullptr) throw std::invalid_argument("the robot is away");
   if (payload.size() > kMostPayload)
-    throw std::invalid_argument(
-        fmt::format("{} bytes are no reading: {} at most", payload.size(), kMostPayload));
+    throw std::invalid_argument(fmt::format("{} bytes are too many for a reading: {} at most",
+                                            payload.size(), kMostPayload));
   if (topic == "stop") {
     session->client.stop();
     stopped(true);
@@ -174,7 +172,7 @@ void Bridge::obey(const std::string& topic, const std::string& payload, Session*
   } else if (const auto reading = reading_of(topic, payload)) {
     feed(compiler::utf8::printable(*reading), *session);
   } else {
-    throw std::invalid_argument("a robot can be told stop, resume, feed/SENSOR/CHANNEL");
+    throw std::invalid_argument("a robot takes stop, resume and feed/SENSOR/CHANNEL");
   }
 }
 

@@ -1,4 +1,4 @@
-// Publishes what a watch sees to a broker, and does what others publish for the
+// Publishes what a watch sees to a broker, and carries out what others publish for the
 // robot: feed, stop, resume.
 #pragma once
 
@@ -36,7 +36,7 @@ private:
 
   std::string root_;  // "robosync/NAME/"
   Mqtt mqtt_;
-  std::set<std::string> of_program_;  // topics that mean nothing when another one runs
+  std::set<std::string> of_program_;  // topics that become void when another program runs
   const vm::Image* image_ = nullptr;
   bool is_online_ = false;
 };

@@ -19,9 +19,9 @@ namespace {
 constexpr int kKeepAliveS = 10;
 constexpr int kQos = 1;
 constexpr unsigned kLeastDelayS = 1, kMostDelayS = 10;
-constexpr std::size_t kMaxWaiting = 1000;  // messages for the robot; of more the oldest are dropped
+constexpr std::size_t kMaxWaiting = 1000;  // messages for the robot; then the oldest are dropped
 
-// What is used of the library.
+// The functions used of the library.
 struct Mosquitto {
 // clang-format off
 #define MOSQUITTO_FUNCTIONS(F)                                                                     \
@@ -47,9 +47,9 @@ struct Mqtt::State {
   Mosquitto library;
   mosquitto* client = nullptr;
   std::string filter;
-  std::map<std::string, std::string> retained;  // what the broker should have
+  std::map<std::string, std::string> retained;  // what the broker should retain
 
-  std::mutex mutex;  // of what follows, which the library's thread writes
+  std::mutex mutex;  // guards the members below, which the library's thread writes
   std::deque<MqttMessage> came;
   std::optional<std::string> news;
   bool connected = false, again = false;
@@ -58,7 +58,7 @@ struct Mqtt::State {
   void connects(int code) {
     const std::scoped_lock lock(mutex);
     if (code != 0) {
-      news = "the broker refuses the connection";
+      news = "the broker refused the connection";
       return;
     }
     connected = true;
@@ -126,13 +126,13 @@ void Mqtt::publish(const std::string& topic, const std::string& payload, bool re
   if (retain) {
     state_->retained[topic] = payload;
     const std::scoped_lock lock(state_->mutex);
-    if (!state_->connected || state_->again) return;  // next() sends it, once
+    if (!state_->connected || state_->again) return;  // next() sends it once
   }
   state_->library.publish_(state_->client, nullptr, topic.c_str(), static_cast<int>(payload.size()),
                            payload.data(), retain ? kQos : 0, retain);
 }
 
-// An empty one takes the place of what was retained.
+// An empty message deletes the retained one.
 void Mqtt::forget(const std::string& topic) {
   if (state_->retained.erase(topic) > 0)
     state_->library.publish_(state_->client, nullptr, topic.c_str(), 0, nullptr, kQos, true);
@@ -141,7 +141,7 @@ void Mqtt::forget(const std::string& topic) {
 void Mqtt::look_at(const std::vector<std::string>& filters) {
   const std::scoped_lock lock(state_->mutex);
   state_->looks_at = filters;
-  if (!state_->connected) return;  // connects() does it
+  if (!state_->connected) return;  // connects() subscribes
   for (const std::string& filter : filters)
     state_->library.subscribe_(state_->client, nullptr, filter.c_str(), kQos);
 }
@@ -198,7 +198,7 @@ Mqtt::Place parse_broker(const std::string& text) {
   }
   if (place.host.empty())
     throw Failure(Exit::usage,
-                  fmt::format("`{}` is no broker; write HOST:PORT, as in localhost:1883", text));
+                  fmt::format("`{}` is not a broker; write HOST:PORT, as in localhost:1883", text));
   return place;
 }
 

@@ -1,5 +1,5 @@
-// A connection to an MQTT broker, by libmosquitto. That is loaded when it is
-// wanted: nobody else needs it installed.
+// A connection to an MQTT broker through libmosquitto, which is loaded only when needed: other verbs
+// do not require it.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,15 @@ namespace robosync::tool {
 
 struct MqttMessage {
   std::string topic, payload;
-  bool retained = false;  // it was there before this connection
+  bool retained = false;  // published before this connection
 };
 
-// Its own thread talks to the broker, and finds it again when it was away. Then
-// what was published with `retain` is published again, for it may have
-// forgotten.
+// Its own thread talks to the broker and reconnects when the connection is lost. It then publishes
+// again what was published with `retain`, because the broker may have lost it.
 class Mqtt {
 public:
-  // `last_words`: what the broker publishes (retained) when this program dies.
-  // Throws Failure (outside) when libmosquitto is not installed, or there is no
-  // broker.
+  // `last_words`: what the broker publishes (retained) if this program dies. Throws Failure
+  // (outside) if libmosquitto is not installed, or there is no broker.
   struct Place {
     std::string host;
     int port = 1883;
@@ -32,16 +30,17 @@ public:
   Mqtt& operator=(const Mqtt&) = delete;
 
   void publish(const std::string& topic, const std::string& payload, bool retain);
-  // Forgets what was retained there, here and in the broker.
+  // Deletes what was retained under this topic, here and in the broker.
   void forget(const std::string& topic);
-  // From now on next() has what is retained there, and then what is published: until look_no_more().
+  // From now on next() also returns what is retained under the topic, then what is published there,
+  // until look_no_more().
   void look_at(const std::vector<std::string>& filters);
   void look_no_more();
-  // Takes away what somebody else has left there.
+  // Deletes what another client has retained there.
   void clear(const std::string& topic);
-  // The next that came for `filter`.
+  // The next message that matches `filter`.
   [[nodiscard]] std::optional<MqttMessage> next();
-  // The connection came or went since it was asked last: a sentence.
+  // A sentence if the connection was made or lost since the last call.
   [[nodiscard]] std::optional<std::string> news();
 
 private:

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-constexpr int kMostAtOnce = 4;  // readings of an output, before the line is listened to again
+constexpr int kMostAtOnce = 4;  // readings of an output between two reads of the line
 constexpr const char* kUsualCamera = "/dev/video0";
 constexpr const char* kUsualMicrophone = "default";
 
@@ -99,7 +99,7 @@ Companion::Companion(std::vector<compiler::SensorConfig> algorithms, CompanionSo
 
 Companion::~Companion() = default;
 
-// ---- which programs run, and what for
+// ---- which programs run
 
 void Companion::program(const TraceNames& names, std::span<const std::byte> /*image*/) {
   image_ = names.image;
@@ -107,7 +107,7 @@ void Companion::program(const TraceNames& names, std::span<const std::byte> /*im
     connect(hearer);
 }
 
-// A program that goes on as before is not started again.
+// A program whose plan is unchanged is not restarted.
 void Companion::connect(Hearer& hearer) {
   hearer.outputs.clear();
   const std::string& name = hearer.algorithm.name.text;
@@ -159,9 +159,9 @@ Worker::Plan Companion::plan_of(const Hearer& hearer) const {
           std::move(arguments), milliseconds(config.period_ms)};
 }
 
-// ---- what they say
+// ---- what they send
 
-// True: it is one of its outputs, whether the robot reads that or not.
+// True: the line is of one of its outputs, whether the robot reads that or not.
 bool Companion::take(Hearer& hearer, const std::string& line) const {
   const auto said = parse_said(line);
   if (!said) return false;
@@ -201,7 +201,7 @@ bool Companion::has_failed() const {
 
 // ---- what the robot is fed
 
-// A line that fails is for the watch to find out.
+// A line failure is left to the watch.
 void Companion::feed(Session& session) {
   try {
     for (Hearer& hearer : hearers_)
@@ -218,11 +218,10 @@ void Companion::feed_one(Session& session, const Hearer& hearer, Output& output,
   const link::FeedResult result =
       session.client.feed({.channel = output.channel, .at_us = 0, .value = value});
   if (result.error == link::FeedError::not_virtual)
-    throw Failure(Exit::program,
-                  fmt::format("{} {} is measured by the robot, whose program was made with another "
-                              "robot.json: upload it again",
-                              hearer.algorithm.name.text, output.name));
-  // Else it is busy, or has just got another program.
+    throw Failure(Exit::program, fmt::format("{} {} is measured by the robot, whose program was "
+                                             "compiled with another robot.json: upload it again",
+                                             hearer.algorithm.name.text, output.name));
+  // Otherwise the robot is busy, or has just started another program.
   if (result.error == link::FeedError::none) show(hearer, output, value);
 }
 

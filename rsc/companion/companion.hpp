@@ -1,5 +1,5 @@
-// What hears and sees for a robot: the programs of the algorithms that robot.json puts on a companion computer, and how what
-// they say gets to the robot. A viewer of a watch (device/viewer.hpp), which keeps the line.
+// Runs the programs of the algorithms that robot.json puts on a companion computer, and feeds their readings to the robot. It
+// is a viewer of a watch (device/viewer.hpp), which owns the line.
 #pragma once
 
 #include <memory>
@@ -15,29 +15,29 @@
 namespace robosync::tool {
 
 struct CompanionSources {
-  std::string camera, microphone;  // a device or a file; empty: the usual one
-  std::string preview;             // a PNG with what the camera saw; empty: none
-  std::string programs;  // the folder that the programs of the modules stand in; empty: looked for
+  std::string camera, microphone;  // a device or a file; empty: the default
+  std::string preview;             // a PNG of the camera's picture; empty: none
+  std::string programs;            // the folder of the modules' programs; empty: search
 };
 
-// Where the program of a module stands: in `folder`, or beside rsc, in the build of the companion, on the PATH. Empty: nowhere.
+// The path of a module's program: in `folder`, next to rsc, in the companion's build or on the PATH. Empty: not found.
 [[nodiscard]] std::string find_companion_program(const std::string& module,
                                                  const std::string& folder);
 
-// The algorithms of a robot.json that run on a companion computer. What is wrong with it is said on stderr, then Failure
-// (program) is thrown. `reads_words`: those that have been taught words must have them.
+// The algorithms of a robot.json that run on a companion computer. Errors in it go to stderr, then Failure (program) is thrown.
+// `reads_words`: read the files of taught words, which must be there.
 [[nodiscard]] std::vector<compiler::SensorConfig> companion_algorithms(const std::string& config,
                                                                        bool reads_words);
 
 class Companion final : public Viewer {
 public:
-  // `algorithms`: those with `companion`. `tells`: what the robot is fed is shown, but for repetitions.
+  // `algorithms`: those with `companion`. `tells`: print what the robot is fed, without repetitions.
   Companion(std::vector<compiler::SensorConfig> algorithms, CompanionSources sources, bool tells);
   ~Companion() override;
 
   void program(const TraceNames& names, std::span<const std::byte> image) override;
   void missed(const std::string& why) override;
-  // False: the recordings are over, or nothing works any more.
+  // False: all recordings have ended, or no program works any more.
   bool work(Session* session) override;
 
   // Every program has given up.
@@ -52,7 +52,7 @@ private:
   };
   struct Hearer {
     compiler::SensorConfig algorithm;
-    std::unique_ptr<Worker> worker;  // null: the program that runs reads nothing of it
+    std::unique_ptr<Worker> worker;  // null: the running program does not read it
     std::vector<Output> outputs;
   };
 

@@ -4,7 +4,7 @@
 namespace robosync::tool {
 namespace {
 
-constexpr std::size_t kMostWaiting = 16;  // of words; of more the oldest are lost
+constexpr std::size_t kMostWaiting = 16;  // words; beyond this the oldest are dropped
 constexpr int kTimesUntilStale = 3;       // a reading may be late, and one lost
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What one channel of the robot is to be fed: each word that was said, the last of numbers, and what stays the same often
-// enough that it does not grow stale while somebody says so.
+// Decides what one channel of the robot is fed: every word, the latest number, and an unchanged value often enough that
+// it does not become stale while the program still reports it.
 #pragma once
 
 #include <chrono>
@@ -14,13 +14,13 @@ class Outlet {
 public:
   using Clock = std::chrono::steady_clock;
 
-  // `stale`: after so long the robot forgets what it was fed; 0: never.
+  // `stale`: how long the robot keeps a value that it was fed; 0: forever.
   Outlet(bool has_words, std::chrono::milliseconds stale) : has_words_(has_words), stale_(stale) {}
 
   void said(vm::Value value);
-  // What is to be fed now, if anything. It counts as fed.
+  // The value to feed now, if any. It then counts as fed.
   [[nodiscard]] std::optional<vm::Value> next(Clock::time_point now);
-  // The robot was away, and knows nothing; what was said meanwhile is no news.
+  // The robot was away and has lost its values; what came meanwhile is dropped.
   void forget();
 
 private:

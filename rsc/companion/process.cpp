@@ -18,19 +18,19 @@
 namespace robosync::tool {
 namespace {
 
-constexpr std::size_t kMostBytes = 4096;  // at once
+constexpr std::size_t kMostBytes = 4096;  // per call
 constexpr std::size_t kLongestLine = 200;
 constexpr int kNotThere = 127;
 
 [[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments,
                          int out, int err) {
-  setpgid(0, 0);  // so that what it starts can be ended with it
+  setpgid(0, 0);  // so that its children can be ended with it
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = open("/dev/null", O_RDONLY);
   dup2(nothing, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
-  closefrom(STDERR_FILENO + 1);  // the line to the robot among them
+  closefrom(STDERR_FILENO + 1);  // among them the line to the robot
   std::vector<char*> texts = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments)
     texts.push_back(const_cast<char*>(argument.c_str()));
@@ -41,14 +41,14 @@ constexpr int kNotThere = 127;
   _exit(kNotThere);
 }
 
-// What can be read without waiting.
+// Reads what is available without waiting.
 std::string read_some(int file) {
   std::array<char, kMostBytes> bytes{};
   const ssize_t count = file < 0 ? 0 : read(file, bytes.data(), bytes.size());
   return {bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0))};
 }
 
-// Adds `text` to `rest`, and gives the lines that are whole then.
+// Appends `text` to `rest`, and returns the complete lines.
 std::vector<std::string> split(const std::string& text, std::string& rest) {
   std::vector<std::string> lines;
   for (const char c : text)
@@ -74,18 +74,18 @@ WorkerProcess::WorkerProcess(const std::string& program,
   for (const int file : {out_, err_})
     if (file >= 0) fcntl(file, F_SETFL, O_NONBLOCK);
   if (child_ < 0) {
-    last_words_ = "this computer can start no more programs";
+    last_words_ = "this computer cannot start any more programs";
     status_ = kNotThere << 8;
   }
 }
 
-// A driver may hold it up: then it is left to the system.
+// A driver may block it: then it is left to the system.
 WorkerProcess::~WorkerProcess() {
   constexpr int kTries = 200;
   constexpr std::chrono::milliseconds kBetween{5};
   if (child_ > 0) {
     kill(-child_, SIGKILL);
-    kill(child_, SIGKILL);  // it may not have got to its setpgid() yet
+    kill(child_, SIGKILL);  // it may not have called setpgid() yet
     for (int i = 0; i < kTries && !ended(); ++i)
       std::this_thread::sleep_for(kBetween);
   }

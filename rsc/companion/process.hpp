@@ -1,5 +1,5 @@
-// The program of a module, started with its stdout and stderr on pipes. It may say and do what it likes: nothing that it does
-// makes whoever started it wait, or need more memory.
+// A module's program, started with its stdout and stderr on pipes. Whatever it writes or does, the caller never waits for it
+// and its memory use stays bounded.
 #pragma once
 
 #include <optional>
@@ -12,19 +12,19 @@ namespace robosync::tool {
 
 class WorkerProcess {
 public:
-  // `program` that cannot be run is one that ends with 127.
+  // A `program` that cannot be run ends with 127.
   WorkerProcess(const std::string& program, const std::vector<std::string>& arguments);
-  // Ends it, and what it has started in its turn.
+  // Ends it and the processes that it started.
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  // The whole lines of stdout that have come, without their ends: some kilobytes at most, the rest the next time. What is
-  // longer than a line may be is cut.
+  // The complete lines of stdout so far, without newlines: a few kilobytes at most, the rest on the next call. Lines that are
+  // too long are cut.
   [[nodiscard]] std::vector<std::string> lines();
-  // How it ended, as waitpid() says; nothing: it runs.
+  // Its status from waitpid(); nothing: it is running.
   [[nodiscard]] std::optional<int> ended();
-  // The last line of its stderr, in characters that a terminal shows.
+  // The last line of its stderr, printable.
   [[nodiscard]] const std::string& last_words();
 
 private:
@@ -39,7 +39,7 @@ private:
 // "exit 3", "signal 11 (Segmentation fault)".
 [[nodiscard]] std::string how_it_ended(int status);
 
-// `text` as a terminal may show it: what is no printable ASCII becomes `?`.
+// `text` made safe for a terminal: anything but printable ASCII becomes `?`.
 [[nodiscard]] std::string printable(const std::string& text);
 
 }  // namespace robosync::tool

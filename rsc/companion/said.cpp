@@ -1,4 +1,4 @@
-// See said.hpp. May assume nothing of the text.
+// See said.hpp. The text is not trusted.
 #include "rsc/companion/said.hpp"
 
 #include <charconv>

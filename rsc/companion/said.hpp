@@ -1,4 +1,4 @@
-// What the program of a module says, in a reading of the robot (docs/companion.md).
+// Parses a line of a module's program as a reading of the robot (docs/companion.md).
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ struct Said {
   std::string_view output, value;
 };
 
-// "WORD hello". Nothing: it is none.
+// "WORD hello". Nothing: the line is not a reading.
 [[nodiscard]] std::optional<Said> parse_said(std::string_view line);
 
-// A word of the channel, or a decimal number in the canonical unit that lies within its range. Nothing: it is neither.
+// A word of the channel, or a decimal number in the canonical unit within its range. Nothing: neither.
 [[nodiscard]] std::optional<vm::Value> parse_value(const vm::Image& image,
                                                    const vm::Channel& channel,
                                                    std::string_view text);

@@ -15,13 +15,13 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kShortestPause{500}, kLongestPause{30'000};
-constexpr milliseconds kLivesWell{30'000};  // after so long it is started again as soon as at first
-constexpr milliseconds kFirstWord{20'000};  // until it has read its model
+constexpr milliseconds kLivesWell{30'000};  // a run this long resets the pause
+constexpr milliseconds kFirstWord{20'000};  // time to load its model
 constexpr milliseconds kLeastPatience{3'000};
-constexpr int kPeriods = 5;     // so many without a word, and it hangs
-constexpr int kMostReads = 32;  // of what a pipe still holds after the end
+constexpr int kPeriods = 5;     // this many without a line, and it counts as hung
+constexpr int kMostReads = 32;  // reads of what the pipe still holds after the end
 
-// Did it end by itself, in this way?
+// Did it exit with this code?
 bool has_ended(int status, companion::Exit how) {
   return WIFEXITED(status) && WEXITSTATUS(status) == static_cast<int>(how);
 }
@@ -45,13 +45,13 @@ bool Worker::listen(const Accept& accept) {
       means_something = true;
     } else if (!has_babbled_) {
       has_babbled_ = true;
-      report_(fmt::format("says what is no reading: {}", printable(line)));
+      report_(fmt::format("sent something that is not a reading: {}", printable(line)));
     }
   }
   return means_something;
 }
 
-// What it has said is taken before it is judged: it may have waited in the pipe while nobody had time.
+// Its lines are read before it is judged: they may have waited in the pipe while rsc was busy.
 void Worker::look(Clock::time_point now, const Accept& accept) {
   if (is_over_ || is_given_up_ || (!process_ && now < next_start_)) return;
   if (!process_) start(now);
@@ -69,7 +69,7 @@ void Worker::look(Clock::time_point now, const Accept& accept) {
   const milliseconds patience =
       has_spoken_ ? std::max(kLeastPatience, plan_.period * kPeriods) : kFirstWord;
   if (now - (has_spoken_ ? alive_ : started_) > patience)
-    end_it(now, fmt::format("has not said anything for {} s: it hangs",
+    end_it(now, fmt::format("has sent nothing for {} s: it hangs",
                             static_cast<double>(patience.count()) / 1000));
 }
 
@@ -90,8 +90,8 @@ void Worker::end_it(Clock::time_point now, const std::string& why) {
   if (now - started_ > kLivesWell) pause_ = kShortestPause;
   process_.reset();
   next_start_ = now + pause_;
-  report_(fmt::format("{}; it is started again in {} s", why,
-                      static_cast<double>(pause_.count()) / 1000));
+  report_(
+      fmt::format("{}; restarting it in {} s", why, static_cast<double>(pause_.count()) / 1000));
   pause_ = std::min(pause_ * 2, kLongestPause);
 }
 

@@ -1,5 +1,5 @@
-// The program of one algorithm, kept running: it is started again when it has ended or hangs, each time later than the time
-// before, and what becomes of it is said.
+// Keeps the program of one algorithm running: restarts it when it ends or hangs, each time after a longer pause, and
+// reports it.
 #pragma once
 
 #include <chrono>
@@ -20,28 +20,28 @@ public:
     std::string name;  // of the algorithm
     std::string program;
     std::vector<std::string> arguments;
-    std::chrono::milliseconds period{};  // it says something at least so often
+    std::chrono::milliseconds period{};  // the longest time between its lines
 
     bool operator==(const Plan&) const = default;
   };
-  // Is it a line that means something? Only those are signs of life.
+  // Is the line meaningful? Only such lines count as signs of life.
   using Accept = std::function<bool(const std::string& line)>;
   using Report = std::function<void(const std::string& what)>;
 
   Worker(Plan plan, Report report);
 
-  // Often: takes what it says, and looks how it does.
+  // Call often: reads its lines and checks on it.
   void look(Clock::time_point now, const Accept& accept);
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
-  // It is not started any more: its recording is over …
+  // It is not restarted: its recording has ended …
   [[nodiscard]] bool is_over() const { return is_over_; }
-  // … or starting it again would not help.
+  // … or a restart would not help.
   [[nodiscard]] bool is_given_up() const { return is_given_up_; }
 
 private:
   void start(Clock::time_point now);
-  // False when nothing it said meant anything.
+  // False if no line was meaningful.
   bool listen(const Accept& accept);
   void take_end(Clock::time_point now, int status);
   void end_it(Clock::time_point now, const std::string& why);
@@ -52,7 +52,7 @@ private:
   Clock::time_point started_, alive_, next_start_;
   std::chrono::milliseconds pause_;
   bool has_spoken_ = false;   // since it was started
-  bool has_babbled_ = false;  // likewise: what it said meant nothing, and that has been reported
+  bool has_babbled_ = false;  // likewise: a meaningless line has been reported
   bool is_over_ = false, is_given_up_ = false;
 };
 

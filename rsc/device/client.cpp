@@ -1,5 +1,4 @@
-// May assume nothing of what the line delivers. Promises that a reply is the one to the request:
-// type, sequence and length are compared.
+// The line is not trusted. Promises that a reply belongs to its request: type, sequence and length are compared.
 #include "rsc/device/client.hpp"
 
 #include <algorithm>
@@ -21,18 +20,18 @@ using std::chrono::milliseconds;
 
 // A reply takes at most 45 ms on the wire; the board verifies an image in a few.
 constexpr milliseconds kRepeatAfter{250};
-// … but for an order, whose signature may take it half a second.
+// … but an order's signature may take it half a second.
 constexpr milliseconds kRepeatOrderAfter{1500};
-// What has come while this machine had no time is still read, but a board that never stops talking is not heard out.
+// Bytes that arrived while this machine was busy are still read after the timeout, but not for longer than this.
 constexpr milliseconds kHearsOut{1000};
 constexpr milliseconds kStarts{20};
-constexpr std::size_t kMaxKept = 4096;  // unasked messages nobody has fetched
+constexpr std::size_t kMaxKept = 4096;  // unsolicited messages not yet fetched
 
 bool is_unasked(MessageType type) {
   return type == MessageType::event || type == MessageType::log || type == MessageType::fault;
 }
 
-// Who asks, in the board's words to another host: this computer's name.
+// This computer's name, which the board tells another host while it is busy.
 link::Hello introduction(bool take) {
   link::Hello hello{};
   std::random_device random;
@@ -55,7 +54,7 @@ std::optional<Message> pop(std::deque<Message>& queue) {
 
 Client::Client(Transport& transport, milliseconds timeout, bool take)
     : transport_(transport), timeout_(timeout), introduction_(introduction(take)) {
-  // Whatever half frame the last host left in the board's decoder ends here.
+  // Ends a partial frame that the last host left in the board's decoder.
   transport_.write(std::array{std::byte{0}});
 }
 
@@ -67,7 +66,7 @@ std::uint8_t Client::send(MessageType type, std::span<const std::byte> payload) 
   return sequence;
 }
 
-// Reads once. False when it is too late.
+// Reads once. False if it is too late.
 bool Client::receive(Transport::Clock::time_point until) {
   const auto left = std::chrono::duration_cast<milliseconds>(until - transport_.now());
   std::array<std::byte, 512> bytes{};
@@ -96,7 +95,7 @@ std::optional<Message> Client::next_unasked(milliseconds timeout) {
   return pop(unasked_);
 }
 
-// Replies to earlier requests, which came too late, are dropped. That of a line that is another's may come in its place.
+// Late replies to earlier requests are dropped. `busy` or a denial may come instead of the reply.
 std::optional<Message> Client::reply_to(std::uint8_t sequence, MessageType type,
                                         Transport::Clock::time_point until) {
   while (true) {
@@ -128,7 +127,7 @@ Reply Client::request(MessageType type, MessageType reply_type,
   no_answer();
 }
 
-// Signed or not, as the board says: it denies what it wants otherwise, and says how.
+// Signed or unsigned, as the board wants: otherwise it denies the order and says how.
 template <typename Reply>
 Reply Client::order(MessageType type, MessageType reply_type, std::span<const std::byte> payload) {
   const auto give_up = transport_.now() + timeout_ + 2 * kRepeatOrderAfter;
@@ -154,7 +153,7 @@ Reply Client::order(MessageType type, MessageType reply_type, std::span<const st
   no_answer();
 }
 
-// Throws Failure when asking again is of no use before `give_up`.
+// Throws Failure if repeating the order before `give_up` is of no use.
 void Client::heed(const link::Authority& authority, Transport::Clock::time_point give_up) {
   orders_.learn(authority);
   if (const std::string why = denial_text(authority); !why.empty())
@@ -164,9 +163,9 @@ void Client::heed(const link::Authority& authority, Transport::Clock::time_point
   const milliseconds left(authority.wait_ms);
   if (transport_.now() + left >= give_up)
     throw Failure(Exit::outside,
-                  "somebody has tried to sign orders without the owner's key: the robot looks at "
-                  "none for " +
-                      std::to_string(left.count() / 1000 + 1) + " s; say this again then");
+                  "somebody has tried to sign orders without the owner's key: the robot ignores "
+                  "signed orders for " +
+                      std::to_string(left.count() / 1000 + 1) + " s; try again then");
   wait(left);
 }
 
@@ -194,12 +193,10 @@ void Client::reopen(const Message& busy, bool& tried) {
   }
   if (tried) {
     const std::string host(by.host.begin(), std::find(by.host.begin(), by.host.end(), '\0'));
-    throw Failure(
-        Exit::outside,
-        fmt::format(
-            "{}: busy: {} uploads a program, and has the line since {} s; try again in some "
-            "seconds, or take it with rsc upload --take",
-            transport_.name(), host, by.since_ms / 1000));
+    throw Failure(Exit::outside,
+                  fmt::format("{}: busy: {} is uploading a program, and has had the line for {} s; "
+                              "try again in a few seconds, or take it with rsc upload --take",
+                              transport_.name(), host, by.since_ms / 1000));
   }
   tried = true;
   (void)hello();
@@ -223,7 +220,7 @@ link::HelloReply Client::hello_answer(std::uint8_t sequence) {
   }
 }
 
-// Its reply may be of another protocol: only the first byte is sure to mean the same.
+// The reply may be of another protocol version: only its first byte has a fixed meaning.
 std::optional<link::HelloReply> Client::take_hello(std::uint8_t sequence,
                                                    Transport::Clock::time_point until) {
   const auto answer = reply_to(sequence, MessageType::hello_reply, until);
@@ -288,7 +285,7 @@ void Client::pair(const link::Pair& owner) {
     if (said.pairing == link::Pairing::paired && said.key == owner.key) return orders_.learn(said);
     heed(said, give_up);
   }
-  throw Failure(Exit::outside, "the board does not write the key down: does its store work?");
+  throw Failure(Exit::outside, "the board does not store the key: does its store work?");
 }
 
 void Client::unpair() {
@@ -301,10 +298,10 @@ void Client::unpair() {
     heed(said, give_up);
   }
   throw Failure(Exit::outside,
-                "the board does not write down that it has no owner: does its store work?");
+                "the board does not record that it has no owner: does its store work?");
 }
 
-// What follows it needs no signature, so a lost line costs none.
+// The rest of the upload needs no signature, so a lost frame costs none.
 void Client::order_upload(std::span<const std::byte> begin, std::span<const std::byte> image,
                           const link::Activate& how) {
   if (!orders_.are_signed()) return;
@@ -341,7 +338,7 @@ std::vector<link::ThreadInfo> Client::threads() {
       const auto answer = reply_to(sequence, MessageType::thread_info, until);
       link::ThreadInfo info{};
       if (!answer || !link::read_payload(answer->payload, info)) break;
-      if (info.index != threads.size()) break;  // one got lost: all over again
+      if (info.index != threads.size()) break;  // one got lost: start over
       threads.push_back(info);
       if (threads.size() == info.total) return threads;
     }

@@ -1,4 +1,4 @@
-// The host's end of the link: requests and their replies over a line that may lose anything.
+// The host's end of the link: requests and replies over a line that may lose anything.
 #pragma once
 
 #include <chrono>
@@ -27,53 +27,53 @@ class Client {
 public:
   using Milliseconds = std::chrono::milliseconds;
 
-  // `timeout`: how long a request is repeated before it fails. `take`: the line is wanted also where another host is in the
-  // midst of a transfer.
+  // `timeout`: how long a request is repeated before it fails. `take`: take the line even while another host is uploading.
   explicit Client(Transport& transport, Milliseconds timeout = Milliseconds(2000),
                   bool take = false);
 
-  // Each sends its request again until its reply comes. Throw Failure (outside) after the timeout.
-  link::HelloReply hello();  // opens a session, as requests that need one do by themselves
+  // These repeat the request until its reply comes, and throw Failure (outside) after the timeout.
+  link::HelloReply hello();  // opens a session; requests that need one do so themselves
   link::Status status();
-  link::Fault last_fault();  // of those the board has kept; no thread: there was none
-  link::Devices devices();   // that the running program measures
+  link::Fault last_fault();  // the latest one that the board has kept; no thread: none
+  link::Devices devices();   // on the buses of the running program
   link::Status clear(const link::ProgramHash& program);  // ends the program, if it runs
   link::Kept kept();
-  // Asks for it only: the board then reads its store.
+  // Only asks for it: the board then reads its store.
   link::Kept roll_back(const link::ProgramHash& to);
   link::Status set_trace(bool on);
-  // All outputs to their safe state, until resume(). The board does it when the frame has come, and replies when it
-  // finds the time: no reply does not mean that it has not stopped.
+  // Puts all outputs into their safe state until resume(). The board does so when the frame arrives and replies later: without a
+  // reply it may have stopped all the same.
   link::Status stop();
   link::Status resume();
-  // Their session is filled in.
+  // The session is filled in here.
   link::FeedResult feed(link::Feed feed);
   link::ActivateResult activate(link::Activate what);
   std::vector<link::ThreadInfo> threads();
-  std::vector<std::byte> running_image();  // empty when no program runs
+  std::vector<std::byte> running_image();  // empty: no program is running
 
-  // Orders to a robot with an owner are signed, by this key or, when none is named, that of default_key_file().
+  // Orders to a robot with an owner are signed with this key, or with default_key_file() if `file` is empty.
   void use_key(const std::string& file) { orders_.use_key(file); }
   bool signs() const { return orders_.are_signed(); }
   link::Authority authority();  // who may give orders
-  // Both ask until it is done. Throw Failure (outside) with the reason when the board does not do it.
+  // Both repeat the request until it is done, and throw Failure (outside) with the reason if the board refuses.
   void pair(const link::Pair& owner);
   void unpair();
-  // Lets an upload of `image`, which says `begin`, through to its activation; for a robot without an owner nothing.
+  // Authorises the upload of `image` that starts with the request `begin`, up to its activation. Does nothing for a robot without
+  // an owner.
   void order_upload(std::span<const std::byte> begin, std::span<const std::byte> image,
                     const link::Activate& how);
-  // hello() in two parts: what is sent between them does not wait for the answer.
+  // hello() in two parts: what is sent in between does not wait for the answer.
   std::uint8_t send_hello();
   link::HelloReply hello_answer(std::uint8_t sequence);
   link::SessionId session() const { return session_; }
 
-  // For transfers, which have several requests under way: sends one frame, returns its sequence.
+  // For transfers, which have several requests in flight: sends one frame, returns its sequence number.
   std::uint8_t send(link::MessageType type, std::span<const std::byte> payload = {});
-  // The next reply. Events, logs and faults that come meanwhile are kept for next_unasked().
+  // The next reply. Events, logs and faults that arrive meanwhile are queued for next_unasked().
   std::optional<Message> next_reply(Milliseconds timeout);
-  // What to do about the reply `busy`, once for each request: says hello, for the board may have started again, or a host that is
-  // idle may have had the line. When it is busy all the same: one rsc at a time uses a line (line_lock.hpp), so what
-  // another one of this computer has left behind is taken, once; else throws Failure (outside).
+  // Handles the reply `busy`, once for each request: says hello, because the board may have restarted, or the host that had the
+  // line may be idle. If the board is still busy and the session is of this computer, it is a leftover, since only one rsc at a
+  // time uses a line (line_lock.hpp): it is taken over, once. Otherwise throws Failure (outside).
   void reopen(const Message& busy, bool& tried);
   // The next event, log line or fault record.
   std::optional<Message> next_unasked(Milliseconds timeout);
@@ -101,7 +101,7 @@ private:
   Orders orders_;
   link::Hello introduction_;
   link::SessionId session_ = introduction_.session;
-  bool took_ = false;  // the line from another rsc of this computer
+  bool took_ = false;  // took over a session of this computer
   link::FrameDecoder decoder_;
   std::uint8_t sequence_ = 0;
   std::deque<Message> replies_;

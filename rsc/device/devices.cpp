@@ -1,4 +1,4 @@
-// See devices.hpp. May assume nothing of what the board sends.
+// See devices.hpp. The board's data is not trusted.
 #include "rsc/device/devices.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A sensor is measured as soon as its program begins.
+// Sensors are measured as soon as the program starts.
 constexpr milliseconds kFirstRound{1000};
 
 bool has(std::uint32_t mask, std::size_t bit) {
@@ -58,9 +58,9 @@ std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image) {
 
 std::string silent_text(const OnBus& device) {
   const char* const look =
-      device.held
-          ? "a line of that bus is held down: do two wires touch, and has every device on it power?"
-          : "has it power, are both wires of the bus connected, is this its address?";
+      device.held ? "a line of that bus is held low: do two wires touch, and does every device on "
+                    "it have power?"
+                  : "does it have power, are both wires of the bus connected, is this its address?";
   return fmt::format("{} does not answer ({} transfer{} failed): {}",
                      name_on_bus(device.name, device.address, device.bus), device.failed,
                      device.failed == 1 ? "" : "s", look);

@@ -12,23 +12,23 @@
 
 namespace robosync::tool {
 
-// A sensor of the running program that is measured on a bus.
+// A sensor of the running program on a bus.
 struct OnBus {
   std::string name;  // of the sensor
   unsigned bus = 0;
   unsigned address = 0;
-  bool asked = false;   // the board has tried to
+  bool asked = false;   // the board has tried to read it
   bool silent = false;  // it does not answer
-  bool held = false;    // nor can anybody on this bus
-  unsigned failed = 0;  // transfers since the program began
+  bool held = false;    // the bus is held low: no device on it can answer
+  unsigned failed = 0;  // transfers since the program started
 };
 
-// `said` by the board that runs `image`.
+// `said`: the report of the board that runs `image`.
 [[nodiscard]] std::vector<OnBus> on_buses(const vm::Image& image, const link::Devices& said);
-// Those that do not answer, once the board has asked all of them, or had the time to.
+// The devices that do not answer, once the board has asked all of them or has had the time to.
 [[nodiscard]] std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image);
 
-// "touch at address 0x70 on i2c bus 0 does not answer (12 transfers failed): …", with what to look at.
+// "touch at address 0x70 on i2c bus 0 does not answer (12 transfers failed): …", with what to check.
 [[nodiscard]] std::string silent_text(const OnBus& device);
 [[nodiscard]] nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices);
 

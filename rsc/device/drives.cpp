@@ -1,4 +1,4 @@
-// See drives.hpp. Linux lists what is mounted in a file; macOS has a folder of it.
+// See drives.hpp. Linux lists mounts in a file; macOS has a folder of them.
 #include "rsc/device/drives.hpp"
 
 #include <fstream>
@@ -9,7 +9,7 @@ namespace robosync::tool {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kOctal = 3;  // digits: "\040" is a space
+constexpr std::size_t kOctal = 3;  // octal digits: "\040" is a space
 
 std::string unescaped(const std::string& text) {
   std::string result;

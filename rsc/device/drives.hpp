@@ -8,9 +8,10 @@
 
 namespace robosync::tool {
 
-// Where the drive of this name is mounted: a folder that is called so, as desktops do it.
+// The mount point of the drive of this name: a folder with that name, as desktops mount
+// drives.
 [[nodiscard]] std::optional<std::filesystem::path> mounted_drive(const std::string& label);
-// The same in a list of mounts, as /proc/self/mounts has it.
+// The same from a list of mounts in the format of /proc/self/mounts.
 [[nodiscard]] std::optional<std::filesystem::path> drive_among(std::string_view mounts,
                                                                const std::string& label);
 

@@ -50,13 +50,13 @@ private:
 
 constexpr int kConnectTimeoutMs = 2000;
 
-// As poll(): 0 when it has taken too long, less when it went wrong.
+// Returns as poll(): 0 after the timeout, negative on error.
 int wait_for(int file, short events, int timeout_ms) {
   pollfd entry{file, events, 0};
   return poll(&entry, 1, timeout_ms);
 }
 
-// Connects a socket that does not block; 0, or the error. Who listens and takes nobody makes it wait, but not for ever.
+// Connects a non-blocking socket; 0, or the error. A peer that listens but does not accept makes it time out.
 int connect_to(int file, const sockaddr* address, socklen_t length) {
   for (int waited_ms = 0; connect(file, address, length) != 0; ++waited_ms) {
     if (errno == EINPROGRESS) {
@@ -116,7 +116,7 @@ private:
     return count > 0;
   }
 
-  // A line that was closed is an error, not the end of the program.
+  // A closed line is an error and must not end the program.
   ssize_t write_some(std::span<const std::byte> bytes) {
     return kind_ == Kind::socket ? send(file_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
                                  : ::write(file_, bytes.data(), bytes.size());
@@ -152,8 +152,7 @@ std::unique_ptr<Transport> open_unix_socket(const std::string& path) {
   Descriptor file(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (file < 0) fail(name, errno);
   const int error = connect_to(file, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  if (error == ETIMEDOUT)
-    fail(name, "somebody listens there, and takes no more connections: is another rsc using it?");
+  if (error == ETIMEDOUT) fail(name, "it takes no more connections: is another rsc using it?");
   if (error != 0) {
     fail(name, fmt::format("{}; is the robot running? (`scripts/robot --socket {}`)",
                            std::strerror(error), path));
@@ -179,7 +178,7 @@ std::unique_ptr<Transport> open_tcp_socket(const std::string& host_and_port) {
         socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK, at->ai_protocol));
     why = file < 0 ? errno : connect_to(file, at->ai_addr, at->ai_addrlen);
     if (why == 0) {
-      const int on = 1;  // frames are small and each waits for its reply
+      const int on = 1;  // frames are small, and each waits for its reply
       setsockopt(file, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
       return std::make_unique<FileTransport>(name, std::move(file), FileTransport::Kind::socket);
     }

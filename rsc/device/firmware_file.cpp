@@ -1,4 +1,4 @@
-// See firmware_file.hpp. A firmware knows the name of its board, so its file has it somewhere.
+// See firmware_file.hpp. A firmware file contains the name of its board.
 #include "rsc/device/firmware_file.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace robosync::tool {
 namespace fs = std::filesystem;
 namespace {
 
-// The bytes of Intel HEX: lines ":LLAAAATT", LL of them, a sum.
+// The data of Intel HEX: lines of ":LLAAAATT", LL bytes, a checksum.
 std::string content_of_hex(const std::string& text) {
   constexpr std::size_t kHead = 9, kPerByte = 2;
   std::string bytes;
@@ -36,10 +36,9 @@ void check_board(const fs::path& file, const std::string& board) {
   std::string content = read_text(file);
   if (file.extension() == ".hex") content = content_of_hex(content);
   if (content.find(board) != std::string::npos) return;
-  throw Failure(Exit::outside,
-                fmt::format("{} is not the firmware of {}: its name does not stand in it; "
-                            "`scripts/firmware {}` makes one",
-                            file.string(), board, board));
+  throw Failure(Exit::outside, fmt::format("{} is not the firmware of {}: it does not contain that "
+                                           "name; `scripts/firmware {}` makes one",
+                                           file.string(), board, board));
 }
 
 std::optional<fs::path> with_ending(const fs::path& stem,
@@ -52,14 +51,14 @@ std::optional<fs::path> with_ending(const fs::path& stem,
   return std::nullopt;
 }
 
-// Beside the tool, where the package has put it.
+// Where the package installs it, relative to the tool.
 fs::path installed_firmware() {
   std::error_code error;
   const fs::path tool = fs::read_symlink("/proc/self/exe", error);
   return tool.parent_path().parent_path() / "share/robosync/firmware";
 }
 
-// As written, or its sibling.
+// The named file, or one next to it with another extension.
 std::optional<fs::path> named(const fs::path& file, const std::vector<std::string_view>& endings) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
@@ -88,7 +87,7 @@ fs::path find_firmware(const std::string& file, const std::string& board,
             ? fmt::format("there is no {}{} here, in build/firmware or in {}: name the file, or "
                           "make it with `scripts/firmware {}`",
                           usual, endings.front(), installed_firmware().string(), board)
-            : fmt::format("{}: a file that ends in {} is needed, and none is beside it", file,
+            : fmt::format("{}: a {} file is needed, and there is none next to it", file,
                           endings.front()));
   }
   check_board(*found, board);

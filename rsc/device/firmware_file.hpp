@@ -8,9 +8,9 @@
 
 namespace robosync::tool {
 
-// `file` if its ending is one of `endings`, else the one beside it that has the first of them that is there. Without `file`:
-// robosync-BOARD in this folder, in build/firmware, or installed with the tool. Throws Failure (outside) when there is none, or
-// when it is not the firmware of `board`.
+// `file` if its extension is one of `endings`, else the file next to it with the first of them that exists. Without `file`:
+// robosync-BOARD in this folder, in build/firmware, or installed with the tool. Throws Failure (outside) if there is none, or
+// if it is not the firmware of `board`.
 [[nodiscard]] std::filesystem::path find_firmware(const std::string& file, const std::string& board,
                                                   const std::vector<std::string_view>& endings);
 

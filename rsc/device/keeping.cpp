@@ -33,8 +33,9 @@ Json program(std::uint32_t bytes, const link::ProgramHash& hash) {
   return {{"hash", text_of(hash)}, {"bytes", bytes}};
 }
 
+// The program that `rsc rollback` returns to.
 struct RollbackTarget {
-  std::uint32_t bytes = 0;  // 0: there is none
+  std::uint32_t bytes = 0;  // 0: none
   link::ProgramHash hash{};
 };
 
@@ -46,8 +47,8 @@ RollbackTarget rollback_target(const link::Kept& kept) {
 std::string why_none(const link::Kept& kept) {
   if (kept.state == Keeping::kept && kept.given_up_hash != link::ProgramHash{})
     return fmt::format(
-        "the board has gone back automatically from program {}, whose trial failed, and keeps no "
-        "other program than the one that runs",
+        "the board went back on its own from program {}, which failed its trial, and keeps only "
+        "the running one",
         text_of(kept.given_up_hash));
   return "the board has kept no program before this one";
 }
@@ -69,8 +70,8 @@ std::string keeping_text(const link::Kept& kept) {
       kept.kept_bytes == 0 ? "has no program" : "starts with the program kept before";
   switch (kept.state) {
     case Keeping::no_store:
-      return fmt::format(
-          "not kept: this board has no store that answers; after a reset the robot {}", instead);
+      return fmt::format("not kept: this board has no working store; after a reset the robot {}",
+                         instead);
     case Keeping::no_program:
       return fmt::format("after a reset the robot {}",
                          kept.kept_bytes == 0 ? instead : "starts with the kept program");
@@ -80,14 +81,13 @@ std::string keeping_text(const link::Kept& kept) {
       return "kept: the robot starts with it after a reset";
     case Keeping::on_trial:
       if (kept.goes_back != 0)
-        return fmt::format("only tried: in {:.1f} s the kept program comes back",
+        return fmt::format("only on trial: the kept program comes back in {:.1f} s",
                            kept.trial_ms / 1000.0);
       return fmt::format(
-          "kept in {:.1f} s if it stands its trial; after a reset before then, the robot {}",
+          "kept in {:.1f} s if it passes its trial; after a reset before then, the robot {}",
           kept.trial_ms / 1000.0, instead);
     case Keeping::failed:
-      return fmt::format("not kept: it has not stood its trial; after a reset the robot {}",
-                         instead);
+      return fmt::format("not kept: it failed its trial; after a reset the robot {}", instead);
     case Keeping::too_large:
       return fmt::format(
           "not kept: the board keeps programs of up to {} bytes; after a reset the robot {}",
@@ -102,12 +102,12 @@ std::string rollback_text(const link::Kept& kept) {
                     : fmt::format("to program {} ({} bytes)", text_of(hash), bytes);
 }
 
-// The board says `kept` of what runs, which is the kept program then.
+// If the board reports `kept`, the kept program is the one that runs.
 bool has_gone_back(const link::Kept& kept, const link::ProgramHash& uploaded) {
   return kept.state == Keeping::kept && kept.kept_hash != uploaded;
 }
 
-// One that has failed before may run again, and stand it this time.
+// A program that failed its trial once may be uploaded again and pass.
 bool has_failed_trial(const link::Kept& kept, const link::ProgramHash& uploaded) {
   return kept.given_up_hash == uploaded && kept.state != Keeping::on_trial &&
          !(kept.state == Keeping::kept && kept.kept_hash == uploaded);
@@ -117,7 +117,7 @@ std::string keeping_text(const link::Kept& kept, const link::ProgramHash& upload
   if (!has_gone_back(kept, uploaded)) return keeping_text(kept);
   return fmt::format(
       "not kept: {}; the program kept before runs again",
-      has_failed_trial(kept, uploaded) ? "it has not stood its trial" : "its trial is over");
+      has_failed_trial(kept, uploaded) ? "it failed its trial" : "its trial is over");
 }
 
 Json keeping_json(const link::Kept& kept) {
@@ -161,7 +161,7 @@ link::HelloReply roll_back(Client& client) {
   const link::HelloReply board = client.hello();
   if (board.running == 0 || board.program_hash != hash)
     throw Failure(Exit::program,
-                  "the program before is not whole in the board's store: upload the one you want");
+                  "the program before is damaged in the board's store: upload the one you want");
   return board;
 }
 

@@ -1,5 +1,5 @@
-// See known_image.hpp. Lines have names that make no good file names, and those of emulators never come again: so a file is named by a
-// number made of the line's, and of the files, kPlaces places in all, each new line takes the place that its number gives.
+// See known_image.hpp. Port names make bad file names, and those of emulators are not reused: the file name is a hash of the port
+// name modulo kPlaces, so a new line may overwrite the file of another.
 #include "rsc/device/known_image.hpp"
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr unsigned kPlaces = 64;
 
-// Empty when this user has no place for such files.
+// Empty if this user has no cache folder.
 fs::path file_of(const std::string& port) {
   const fs::path cache = cache_folder();
   if (cache.empty()) return {};
@@ -36,7 +36,7 @@ std::vector<std::byte> known_image(const std::string& port) {
     std::vector<std::byte> image = read_bytes(path);
     if (vm::is_named(image, {})) return image;
   } catch (const Failure&) {
-    // As if there were none.
+    // Treated as missing.
   }
   return {};
 }
@@ -49,7 +49,7 @@ void know_image(const std::string& port, std::span<const std::byte> image) {
   try {
     write_output(path, image);
   } catch (const Failure&) {
-    // The next image travels whole.
+    // The next upload sends the whole image.
   }
 }
 

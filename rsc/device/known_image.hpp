@@ -1,5 +1,5 @@
-// The image that was uploaded last over a line, kept in this user's cache: the next one travels as what differs from it. The board
-// says whether it still runs that one; so nothing depends on what is kept here.
+// The last image uploaded over a line, in this user's cache: the next upload sends only the difference. The board says whether it
+// still runs that image, so correctness does not depend on the cache.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace robosync::tool {
 
-// Empty when none is known, or what is kept is not whole.
+// Empty if none is known, or the cached file is damaged.
 [[nodiscard]] std::vector<std::byte> known_image(const std::string& port);
-// A place that cannot be written is no failure.
+// A cache that cannot be written is not an error.
 void know_image(const std::string& port, std::span<const std::byte> image);
 
 }  // namespace robosync::tool

@@ -1,5 +1,5 @@
-// See line_lock.hpp. May assume Linux: locks on bytes of the device that belong to the open file (F_OFD_SETLK). Byte 0
-// is the line, byte 1 is to want it. They go with the process that has them, however it ends.
+// See line_lock.hpp. May assume Linux: locks on bytes of the device, owned by the open file (F_OFD_SETLK). Byte 0 is
+// the line, byte 1 the request for it. They are released when the process ends, however it ends.
 #include "rsc/device/line_lock.hpp"
 
 #include <cerrno>
@@ -28,7 +28,7 @@ struct flock lock_of(Part part, short type) {
   return lock;
 }
 
-// What cannot be locked for another reason is used without.
+// A device that cannot be locked for another reason is used without a lock.
 bool try_take(int file, Part part) {
   struct flock lock = lock_of(part, F_WRLCK);
   return fcntl(file, F_OFD_SETLK, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
@@ -61,7 +61,7 @@ bool LineLock::wanted() const {
   return fcntl(file_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
-// To want it as well would take it from whom it was lent to.
+// Requesting it here would take it away from the borrower.
 bool LineLock::lend(const std::function<bool()>& waiting) const {
   let_go(file_, kLine);
   while (wanted() || !try_take(file_, kLine)) {

@@ -1,5 +1,5 @@
-// Who uses a line that every rsc on this computer can open: one at a time, for two would each take bytes that are for the
-// other. Who uses it for long lends it to those who want it.
+// Locks a line that every rsc on this computer can open: two at a time would each take bytes meant for the other. A
+// long-running rsc lends the line to those that want it.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,14 @@ namespace robosync::tool {
 
 class LineLock {
 public:
-  // Of the open device `file`, until that is closed. in_turn waits a second for another rsc to lend the line, or to end; then
-  // it throws Failure (outside). at_once only wants it.
+  // Locks the open device `file` until it is closed. in_turn waits a second for another rsc to lend the line or to end, then
+  // throws Failure (outside). at_once only requests it.
   LineLock(int file, const std::string& port, Sharing sharing);
 
-  // Does another one wait for the line?
+  // Is another rsc waiting for the line?
   bool wanted() const;
-  // Lets it go and waits until nobody has it or wants it. False when `waiting`, asked again and again, has given up: then
-  // the line is the other one's.
+  // Releases the line and waits until no other rsc has or wants it. False if `waiting`, which is polled, gave up: the other
+  // rsc then has the line.
   [[nodiscard]] bool lend(const std::function<bool()>& waiting) const;
 
 private:

@@ -1,5 +1,5 @@
-// See line_recorder.hpp. Promises that what was seen is on the disk a moment
-// later, whatever ends this program.
+// See line_recorder.hpp. Promises that events are on disk shortly after they were
+// seen, however this program ends.
 #include "rsc/device/line_recorder.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ void LineRecorder::event(const link::Event& event, const TraceNames& names) {
   stream_ << trace_json(event, names) << '\n';
 }
 
-// The board has counted what was lost before it said how it is.
+// The losses in a status were counted before it was sent.
 void LineRecorder::status(const link::Status&) {
   if (!missed_) stream_ << whole_line();
   missed_ = false;

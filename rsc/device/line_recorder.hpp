@@ -1,4 +1,4 @@
-// Writes what a watch sees into a file, for rsc replay (trace/replay_file.hpp).
+// Records what a watch sees in a file, for rsc replay (trace/replay_file.hpp).
 #pragma once
 
 #include <fstream>
@@ -10,7 +10,7 @@ namespace robosync::tool {
 
 class LineRecorder final : public Viewer {
 public:
-  // Throws Failure (outside) when it cannot be written.
+  // Throws Failure (outside) if the file cannot be written.
   explicit LineRecorder(const std::string& file);
 
   void program(const TraceNames& names, std::span<const std::byte> image) override;
@@ -22,7 +22,7 @@ public:
 private:
   std::string file_;
   std::ofstream stream_;
-  bool missed_ = false;  // since the board was asked last
+  bool missed_ = false;  // since the last status of the board
 };
 
 }  // namespace robosync::tool

@@ -25,11 +25,10 @@ std::vector<std::byte> Orders::sign(link::MessageType type, std::span<const std:
   link::Authority& authority = authority_.value();
   if (!key_) key_ = OwnerKey::read(key_file(file_));
   if (key_->public_key() != authority.key) {
-    throw Failure(
-        Exit::outside,
-        fmt::format("the robot's owner has the key {}, and {} is the key {}: name the "
-                    "file of the other one, --key FILE",
-                    id_of(authority.key), key_file(file_).string(), id_of(key_->public_key())));
+    throw Failure(Exit::outside, fmt::format("the robot's owner has the key {}, and {} is the key "
+                                             "{}: name the right file with --key FILE",
+                                             id_of(authority.key), key_file(file_).string(),
+                                             id_of(key_->public_key())));
   }
   link::SignedOrder order{};
   order.boot = authority.boot;
@@ -65,16 +64,15 @@ std::string denial_text(const link::Authority& authority) {
     case Denial::no_owner:
       return {};
     case Denial::bad_signature:
-      return "the robot says that the signature is not its owner's: is this firmware of another "
+      return "the robot says that the signature is not its owner's: is its firmware from another "
              "release than this rsc?";
     case Denial::has_owner:
       return fmt::format(
-          "the robot has an owner already, whose key is {}: rsc unpair with that key comes first",
+          "the robot already has an owner, with the key {}: run rsc unpair with that key first",
           id_of(authority.key));
     case Denial::nobody_there:
-      return "the robot takes a key only in the first minute after it was switched on, so that it "
-             "is somebody beside it who "
-             "gives one: switch it off and on, and say this again";
+      return "the robot takes a key only in the first minute after it is switched on, so that only "
+             "somebody next to it can give one: switch it off and on, and try again";
     case Denial::no_store:
       return "this board cannot be paired: it has no store for a key, or its firmware cannot "
              "verify signatures (docs/security.md)";
@@ -85,10 +83,10 @@ std::string denial_text(const link::Authority& authority) {
 std::string owner_text(const link::Authority& authority) {
   switch (authority.pairing) {
     case Pairing::impossible:
-      return "nobody: whoever has this line gives the robot orders, and this board cannot be "
+      return "nobody: anyone on this line can give the robot orders, and this board cannot be "
              "paired";
     case Pairing::unpaired:
-      return "nobody: whoever has this line gives the robot orders, until `rsc pair`";
+      return "nobody: anyone on this line can give the robot orders, until `rsc pair`";
     case Pairing::paired:
       return "key " + id_of(authority.key);
   }

@@ -1,4 +1,4 @@
-// The host's part in who may give a robot orders: signs them with the owner's key, and says in words why one was not taken.
+// The host's side of order signing: signs orders with the owner's key, and explains why an order was refused.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,17 @@ namespace robosync::tool {
 
 class Orders {
 public:
-  // Else it is default_key_file(). It is read when it is needed first.
+  // The key file; default_key_file() if not set. It is read when first needed.
   void use_key(const std::string& file) { file_ = file; }
 
-  // As the board said last.
+  // The board's latest report.
   void learn(link::Pairing pairing) { pairing_ = pairing; }
   void learn(const link::Authority& authority);
   bool are_signed() const { return pairing_ == link::Pairing::paired; }
-  bool know_how() const { return authority_.has_value(); }  // the next one must be signed
+  bool know_how() const { return authority_.has_value(); }  // the next order must be signed
 
-  // The payload of the signed order; know_how() is true. Throws Failure (outside) when there is no key, or another one than
-  // the robot's owner has.
+  // The payload of the signed order; requires know_how(). Throws Failure (outside) if there is no key, or it is not the
+  // owner's.
   std::vector<std::byte> sign(link::MessageType type, std::span<const std::byte> payload);
 
 private:
@@ -38,13 +38,13 @@ private:
   std::optional<link::Authority> authority_;
 };
 
-// What the signed `begin` of an upload ends with.
+// The last part of an upload's signed `begin`.
 [[nodiscard]] link::Grant grant_of(std::span<const std::byte> image, const link::Activate& how);
 
-// Why the board has not taken an order, when asking again is of no use. Empty: it is.
+// Why the board refused an order, if repeating it is of no use. Empty: repeat it.
 [[nodiscard]] std::string denial_text(const link::Authority& authority);
 
-// Who gives the robot orders, in a line, and for JSON.
+// Who may give the robot orders, as one line and as JSON.
 [[nodiscard]] std::string owner_text(const link::Authority& authority);
 [[nodiscard]] nlohmann::ordered_json owner_json(const link::Authority& authority);
 

@@ -1,5 +1,5 @@
-// See owner_key.hpp. The file is one line of words, so that a person who finds it knows what it is, and one of 64 hexadecimal
-// digits, the seed of the key.
+// See owner_key.hpp. The file has a line of text, so that a person who finds it knows what it is, and a line of 64
+// hexadecimal digits, the seed of the key.
 #include "rsc/device/owner_key.hpp"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ private:
   int descriptor_;
 };
 
-// What is secret, and wiped.
+// Secret bytes, wiped after use.
 template <typename Element, std::size_t kCount>
 struct Wiped {
   Wiped() = default;
@@ -56,7 +56,7 @@ struct Wiped {
   Wiped& operator=(const Wiped&) = delete;
   std::array<Element, kCount> bytes{};
 };
-using Text = Wiped<char, kLength + 1>;  // of the file, and one more, so that a longer file is seen
+using Text = Wiped<char, kLength + 1>;  // of the file, and one more to detect a longer file
 using Seed = Wiped<unsigned char, crypto_sign_SEEDBYTES>;
 
 void make_folder(const fs::path& folder) {
@@ -75,8 +75,9 @@ fs::path default_key_file() {
     return fs::path(settings) / "robosync" / "key";
   const char* const home = std::getenv("HOME");
   if (home == nullptr || *home == '\0')
-    throw Failure(Exit::outside,
-                  "neither XDG_CONFIG_HOME nor HOME says where your key is: name it, --key FILE");
+    throw Failure(
+        Exit::outside,
+        "neither XDG_CONFIG_HOME nor HOME says where your key is: name it with --key FILE");
   return fs::path(home) / ".config" / "robosync" / "key";
 }
 
@@ -108,9 +109,8 @@ std::unique_ptr<const OwnerKey> OwnerKey::make(const fs::path& file) {
   const File out(open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (out.get() < 0 && errno == EEXIST)
     fail(file,
-         "there is a file already, and a key that is lost locks its owner out of robots: move it "
-         "away first, or name "
-         "another one, --key FILE");
+         "the file already exists, and a lost key locks its owner out of robots: move it away "
+         "first, or name another with --key FILE");
   if (out.get() < 0) fail(file, std::strerror(errno));
   Seed seed;
   randombytes_buf(seed.bytes.data(), seed.bytes.size());
@@ -128,7 +128,7 @@ std::unique_ptr<const OwnerKey> OwnerKey::read(const fs::path& file) {
   start_sodium();
   const File in(open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (in.get() < 0 && errno == ENOENT)
-    fail(file, "there is no key: make one, rsc keygen, or name the file of yours, --key FILE");
+    fail(file, "there is no key: make one with rsc keygen, or name yours with --key FILE");
   if (in.get() < 0) fail(file, std::strerror(errno));
   struct stat about {};
   if (fstat(in.get(), &about) != 0) fail(file, std::strerror(errno));
@@ -143,7 +143,7 @@ std::unique_ptr<const OwnerKey> OwnerKey::read(const fs::path& file) {
       sodium_hex2bin(seed.bytes.data(), seed.bytes.size(), text.bytes.data() + kWords.size(),
                      kDigits, nullptr, &bytes, nullptr) == 0 &&
       bytes == seed.bytes.size();
-  if (!good) fail(file, "this is no key that rsc keygen has made");
+  if (!good) fail(file, "this is not a key from rsc keygen");
   return std::unique_ptr<const OwnerKey>(new OwnerKey(seed.bytes));
 }
 

@@ -1,4 +1,4 @@
-// The key with which a person signs the orders to robots: a file of one's own, made by `rsc keygen`.
+// The key with which a person signs orders to robots: a private file made by `rsc keygen`.
 #pragma once
 
 #include <array>
@@ -12,22 +12,22 @@
 
 namespace robosync::tool {
 
-// Where the key is when nobody says: in the folder of the user's settings (XDG).
+// The default path of the key: in the user's configuration folder (XDG).
 [[nodiscard]] std::filesystem::path default_key_file();
-// … or the file that --key names, when it is not empty.
+// The file that --key names, or the default if `named` is empty.
 [[nodiscard]] std::filesystem::path key_file(const std::string& named);
 
-// What people compare: the beginning of the SHA-256 of a public key, in groups of four digits.
+// The fingerprint that people compare: the start of the SHA-256 of a public key, in groups of four digits.
 [[nodiscard]] std::string id_of(const link::PublicKey& key);
 
 class OwnerKey {
 public:
-  // Makes a new one, in a file that nobody else may read. Throws Failure (outside) when there is one already.
+  // Makes a new key in a file that nobody else may read. Throws Failure (outside) if the file exists.
   static std::unique_ptr<const OwnerKey> make(const std::filesystem::path& file);
-  // Throws Failure (outside) when there is none, others may read it, or it is no key.
+  // Throws Failure (outside) if there is no key, others may read it, or it is not a key.
   static std::unique_ptr<const OwnerKey> read(const std::filesystem::path& file);
 
-  ~OwnerKey();  // and its secret is gone from memory
+  ~OwnerKey();  // wipes the secret from memory
   OwnerKey(const OwnerKey&) = delete;
   OwnerKey& operator=(const OwnerKey&) = delete;
 

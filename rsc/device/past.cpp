@@ -1,4 +1,4 @@
-// See past.hpp. May assume nothing of what the board sends.
+// See past.hpp. The board's data is not trusted.
 #include "rsc/device/past.hpp"
 
 #include <fmt/format.h>

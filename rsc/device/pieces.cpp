@@ -1,5 +1,5 @@
-// Looks for each place of the image what was there before, the longest of some candidates (as LZ77 does). May assume nothing;
-// promises that what a board makes of the pieces is the image.
+// Looks for the longest earlier match of each place in the image among some candidates (like LZ77). Promises that the board's
+// result is the image, whatever the base is.
 #include "rsc/device/pieces.hpp"
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 namespace robosync::tool {
 namespace {
 
-constexpr std::size_t kShortest = 8;  // a piece more takes 6 bytes
+constexpr std::size_t kShortest = 8;  // another piece takes 6 bytes
 constexpr std::size_t kMostTried = 32;
-constexpr std::size_t kFarthest = 0xFFFF;  // of what two bytes can say
+constexpr std::size_t kFarthest = 0xFFFF;  // the most that two bytes can encode
 constexpr std::size_t kNowhere = SIZE_MAX;
 
-// Where the same kShortest bytes stood before, latest first.
+// Earlier places with the same kShortest bytes, latest first.
 class Earlier {
 public:
   explicit Earlier(std::span<const std::byte> all) : all_(all), before_(all.size(), kNowhere) {
@@ -29,7 +29,7 @@ public:
     before_[at] = latest;
     latest = at;
   }
-  // The beginning of the longest match; its length is 0 when there is none.
+  // The start of the longest match; its length is 0 if there is none.
   std::size_t find(std::size_t at, std::size_t& length) const {
     length = 0;
     if (at + kShortest > all_.size()) return kNowhere;

@@ -1,4 +1,4 @@
-// See printer.hpp. Promises that each line is written out at once.
+// See printer.hpp. Promises that each line is flushed immediately.
 #include "rsc/device/printer.hpp"
 
 #include <iostream>

@@ -1,5 +1,4 @@
-// What a watch sees, line by line on stdout: for people, or as JSON. What is
-// missed stands on stderr.
+// Prints what a watch sees, line by line on stdout, for people or as JSON. Losses go to stderr.
 #pragma once
 
 #include "rsc/console.hpp"
@@ -18,7 +17,7 @@ public:
   void fault(const link::Fault& fault) override;
   void threads(ThreadList now, ThreadList before) override;
   void missed(const std::string& why) override;
-  bool work(Session* session) override;  // throws Failure (outside) when nobody takes the lines
+  bool work(Session* session) override;  // throws Failure (outside) if stdout cannot be written
 
 private:
   Format format_;

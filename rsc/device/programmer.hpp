@@ -1,4 +1,4 @@
-// Programs of others that put a firmware on a board.
+// External programs that flash a board.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace robosync::tool {
 // Is a program of this name on PATH?
 [[nodiscard]] bool is_installed(const std::string& program);
 
-// Runs it, without a shell; what it says goes where rsc's own words go. Returns its exit code; 127 when it
-// could not be started, 128 and more when a signal ended it.
+// Runs it without a shell; it inherits rsc's stdout and stderr. Returns its exit code; 127 if it could not
+// be started, 128 and more if a signal ended it.
 [[nodiscard]] int run_program(const std::vector<std::string>& command);
 
 }  // namespace robosync::tool

@@ -73,16 +73,14 @@ Uploaded upload_to(const std::string& port, const Program& program, const SendOp
   return uploaded;
 }
 
-void expect_trial_stood(const SendOptions& options, const Uploaded& uploaded,
-                        const Program& program) {
-  if (!has_failed_trial(uploaded.kept, program.image().header->program_hash)) return;
-  const char* const now = uploaded.kept.kept_bytes == 0 ? "there is none to go back to: it runs on"
-                                                        : "that one runs again";
-  throw Failure(Exit::program,
-                options.file +
-                    " did not stand its trial: a thread of it faulted, or a SAFETY rule tripped "
-                    "that did not in the program before; " +
-                    now);
+void expect_passed_trial(const std::string& file, const link::Kept& kept, const Program& program) {
+  if (!has_failed_trial(kept, program.image().header->program_hash)) return;
+  const char* const now = kept.kept_bytes == 0 ? "there is none to go back to: it keeps running"
+                                               : "that one runs again";
+  throw Failure(Exit::program, file +
+                                   " failed its trial: one of its threads faulted, or a SAFETY "
+                                   "rule tripped that did not in the program before; " +
+                                   now);
 }
 
 }  // namespace robosync::tool

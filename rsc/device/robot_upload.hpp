@@ -1,4 +1,4 @@
-// What rsc upload does with one robot, and what it says of it.
+// What rsc upload does with one robot, and what it reports.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 
 namespace robosync::tool {
 
-// What the person has asked for.
+// What the user asked for.
 struct SendOptions {
   std::string file, key;
   std::vector<std::string> ports;
@@ -33,7 +33,7 @@ struct SendOptions {
 
 using Progress = std::function<void(std::size_t sent, std::size_t total)>;
 
-// What a robot has got, and how it stands with it.
+// The result of an upload, and whether the robot keeps it.
 struct Uploaded {
   UploadResult result;
   std::vector<OnBus> silent;
@@ -46,11 +46,10 @@ struct Uploaded {
 [[nodiscard]] nlohmann::ordered_json json_of(const Uploaded& uploaded, const Program& program);
 void print_json(const nlohmann::ordered_json& json);
 
-// Throws Failure as Session and upload_program().
+// Throws what Session and upload_program() throw.
 [[nodiscard]] Uploaded upload_to(const std::string& port, const Program& program,
                                  const SendOptions& options, const Progress& progress);
-// Throws Failure (program) when the program has not stood its trial.
-void expect_trial_stood(const SendOptions& options, const Uploaded& uploaded,
-                        const Program& program);
+// Throws Failure (program) if the program failed its trial.
+void expect_passed_trial(const std::string& file, const link::Kept& kept, const Program& program);
 
 }  // namespace robosync::tool

@@ -1,5 +1,5 @@
-// See saved_uploads.hpp. A program that is wrong is said, and the one before
-// runs on.
+// See saved_uploads.hpp. Errors in a program are printed, and the previous one
+// keeps running.
 #include "rsc/device/saved_uploads.hpp"
 
 #include <iostream>

@@ -1,5 +1,5 @@
-// Uploads a program to the board that is watched: first of all, and again
-// whenever one of its files is saved.
+// Uploads a program to the watched board at the start, and again whenever one of its
+// files is saved.
 #pragma once
 
 #include <list>
@@ -24,8 +24,7 @@ private:
   std::string file_;
   CompileOptions how_;
   SavedFiles saved_;
-  std::list<Program>
-      programs_;  // that were uploaded so far, one for each time that a file was saved
+  std::list<Program> programs_;  // all uploaded so far, one for each save
   bool is_first_ = true;
 };
 

@@ -1,4 +1,4 @@
-// Which boards are at the serial ports and drives of this computer.
+// Finds the boards on this computer's serial ports and drives.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace robosync::tool {
 
-// What a port's board says of itself; nothing when nobody answers as RoboSync does.
+// What the board on a port reports about itself; nothing if no RoboSync firmware answers.
 struct Answer {
   std::string board, firmware;
 };
@@ -20,11 +20,11 @@ using Ask = std::function<std::optional<Answer>(const std::string& port)>;
 
 struct SeenPort {
   SerialPort port;
-  std::vector<std::string> may_be;  // the known boards whose serial line looks like that
+  std::vector<std::string> may_be;  // known boards whose serial port has this USB id
   std::optional<Answer> answer;
 };
 
-// Only ports that may be a board are asked: what is at another one might take the question for an order.
+// Only ports that may be a board are asked: another device might take the request for a command.
 [[nodiscard]] std::vector<SeenPort> look_at_ports(const std::vector<SerialPort>& ports,
                                                   const Ask& ask);
 

@@ -92,7 +92,8 @@ Port find(const std::string& path) {
   return Port(found);
 }
 
-// The lock keeps other rsc away. Newer versions of libserialport keep everyone away, which would lock out `rsc stop` too.
+// The lock keeps other rsc processes away. Newer versions of libserialport open the port exclusively, which would also
+// lock out `rsc stop`.
 std::optional<LineLock> claim(const sp_port* port, const std::string& path, Sharing sharing) {
   int file = -1;
   if (sp_get_port_handle(port, &file) != SP_OK) return std::nullopt;

@@ -18,11 +18,11 @@ namespace robosync::tool {
 
 enum class Greeting {
   now,   // waits for the board's answer
-  later  // says hello only, so that more can be sent at once; then greet()
+  later  // only sends hello, so that more can be sent without waiting; then greet()
 };
 
 struct Session {
-  // Opens the port and says hello. Throws Failure (outside) when there is no port, or no answer
+  // Opens the port and says hello. Throws Failure (outside) if there is no port, or no answer
   // before the timeout. `take`: see Client.
   explicit Session(const std::string& port,
                    std::chrono::milliseconds timeout = std::chrono::milliseconds(2000),
@@ -46,11 +46,11 @@ private:
   std::optional<std::uint8_t> asked_;
 };
 
-// Where a robot is, and with which key orders to it are signed (empty: the usual one).
+// The port of a robot, and the key that signs orders to it (empty: the default).
 struct Place {
   std::string port, key;
 };
-// Throws as Session().
+// Throws what Session() throws.
 [[nodiscard]] inline std::unique_ptr<Session> open_session(const Place& place) {
   auto session = std::make_unique<Session>(place.port);
   session->client.use_key(place.key);

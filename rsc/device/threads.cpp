@@ -1,5 +1,5 @@
-// May assume nothing of the numbers: they come from the line. The board's counters wrap at 32 bits,
-// so only differences of them mean something, and of lists that are not minutes apart.
+// The numbers come from the line and are not trusted. The board's counters wrap at 32 bits, so only
+// differences between lists less than minutes apart are meaningful.
 #include "rsc/device/threads.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The numbers of link::ThreadInfo; kernel::Category has the same order.
+// By the numbers in link::ThreadInfo; kernel::Category has the same order.
 constexpr std::array<std::string_view, policy::kCategories> kCategories = {
     "system", "sensor", "algorithm", "processing", "behavior", "control", "safety"};
 constexpr std::array<std::string_view, 4> kStates = {"blocked", "ready", "stopped", "absent"};
@@ -28,7 +28,7 @@ std::string_view word(const std::array<std::string_view, N>& words, std::size_t 
   return number < N ? words[number] : "?";
 }
 
-// In percent. A thread that was not there before, or is another program's, has none yet.
+// In percent. A new thread, or one of another program, has no share yet.
 std::optional<double> share(const link::ThreadInfo& thread, ThreadList before) {
   const auto earlier = std::find_if(before.begin(), before.end(), [&](const auto& other) {
     return other.name == thread.name && other.category == thread.category &&

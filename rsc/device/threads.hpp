@@ -1,4 +1,4 @@
-// What the board says of its threads, as a table for people and as JSON.
+// The board's threads, as a table for people and as JSON.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ namespace robosync::tool {
 
 using ThreadList = std::span<const link::ThreadInfo>;
 
-// `before` is an earlier list: between the two each thread's share of the processor is told. Empty:
-// there is none, and no shares are told.
+// `before` is an earlier list, from which each thread's share of the processor is worked out.
+// Empty: no shares are shown.
 [[nodiscard]] std::string threads_table(ThreadList now, ThreadList before);
-// All of them together, in percent of the processor.
+// The load of all threads together, in percent of the processor.
 [[nodiscard]] std::optional<double> load_of(ThreadList now, ThreadList before);
 [[nodiscard]] nlohmann::ordered_json threads_json(ThreadList now, ThreadList before);
 

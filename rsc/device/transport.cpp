@@ -1,4 +1,4 @@
-// Which kind of line a port name means.
+// Selects the kind of line by the port's name.
 #include "rsc/device/transport.hpp"
 
 #include <filesystem>

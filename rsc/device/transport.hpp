@@ -10,7 +10,7 @@
 
 namespace robosync::tool {
 
-// How long a line may take no bytes before it counts as gone.
+// How long a line may accept no bytes before it counts as lost.
 inline constexpr int kWriteTimeoutMs = 5000;
 
 class Transport {
@@ -19,30 +19,31 @@ public:
 
   virtual ~Transport() = default;
 
-  // Waits at most `timeout` for bytes. Returns how many came; 0 after the timeout, or earlier when
-  // a signal came in. Throws Failure (outside) when the line is gone.
+  // Waits at most `timeout` for bytes. Returns how many came; 0 after the timeout, or earlier
+  // after a signal. Throws Failure (outside) if the line is lost.
   virtual std::size_t read(std::span<std::byte> bytes, std::chrono::milliseconds timeout) = 0;
-  // Writes all. Throws Failure (outside) when the line is gone or takes nothing for so long.
+  // Writes all bytes. Throws Failure (outside) if the line is lost or accepts nothing for that
+  // long.
   virtual void write(std::span<const std::byte> bytes) = 0;
   virtual std::string name() const = 0;  // as the user wrote it
-  // Lines that every rsc can open (line_lock.hpp); of others there is nothing to lend.
+  // For lines that every rsc can open (line_lock.hpp); other lines have nothing to lend.
   virtual bool wanted() const { return false; }
   [[nodiscard]] virtual bool lend(const std::function<bool()>& /*waiting*/) { return true; }
-  // What timeouts are measured with.
+  // The clock for timeouts.
   virtual Clock::time_point now() const { return Clock::now(); }
 };
 
-// How a serial line or a pty is shared with other rsc (line_lock.hpp).
+// How a serial line or a pty is shared with other rsc processes (line_lock.hpp).
 enum class Sharing {
   in_turn,  // waits for it
-  at_once   // begins while it waits: the first reply may go to the other one
+  at_once   // starts while it waits: the first reply may go to the other process
 };
 
-// One name for all that name the same device or socket, as far as its file tells.
+// The same name for all names of one device or socket, as far as its file shows.
 [[nodiscard]] std::string real_name_of(const std::string& port);
 
 // `port`: a serial device (115,200 baud, 8N1), a pty, unix:PATH or tcp:HOST:PORT. Throws Failure:
-// outside when it cannot be opened (and says why), usage when it is not such a name.
+// outside if it cannot be opened (with the reason), usage if it is not such a name.
 [[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& port,
                                                    Sharing sharing = Sharing::in_turn);
 

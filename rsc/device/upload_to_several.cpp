@@ -21,15 +21,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// One of several robots, each of which has a thread.
+// One of several robots; each has its own thread.
 struct Robot {
   std::string port;
   std::optional<Uploaded> uploaded;
   Exit exit = Exit::fine;
-  std::string why_not;  // what rsc would say of this robot alone; empty: it runs the program
+  std::string why_not;  // what rsc would print for this robot alone; empty: it runs the program
 };
 
-// What goes wrong stays with this robot.
+// A failure only affects this robot.
 void serve(Robot& robot, const SendOptions& options, const Program& program) {
   const auto fails = [&robot](Exit exit, const char* why) {
     robot.exit = exit;
@@ -37,7 +37,7 @@ void serve(Robot& robot, const SendOptions& options, const Program& program) {
   };
   try {
     robot.uploaded = upload_to(robot.port, program, options, {});
-    expect_trial_stood(options, *robot.uploaded, program);
+    expect_passed_trial(options.file, robot.uploaded->kept, program);
   } catch (const Failure& failure) {
     fails(failure.exit(), failure.what());
   } catch (const std::exception& error) {
@@ -54,7 +54,7 @@ std::vector<Robot> serve_all(const SendOptions& options, const Program& program)
   threads.reserve(robots.size());
   for (Robot& robot : robots)
     threads.emplace_back([&] { serve(robot, options, program); });
-  threads.clear();  // each ends with its answer, or by its timeout
+  threads.clear();  // joins: each ends with an answer or by its timeout
   return robots;
 }
 
@@ -67,7 +67,7 @@ Json json_of(const Robot& robot, const Program& program) {
   return json;
 }
 
-// Reasons may have a line each, and a row of the table is one.
+// A message may have several lines, but a table row is one line.
 std::string in_one_line(const std::string& text) {
   std::string line;
   for (std::size_t at = 0; at < text.size();) {

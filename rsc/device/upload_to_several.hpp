@@ -6,8 +6,8 @@
 
 namespace robosync::tool {
 
-// To all of options.ports, which are different lines. One robot's trouble stops no other. Throws Failure, with the highest of
-// the exit codes that they would have given one by one, when the program does not run on all of them.
+// Uploads to all of options.ports, which are different lines. A failure of one robot does not stop the others. Throws
+// Failure, with the highest exit code of the single uploads, if the program does not run on all of them.
 void upload_to_several(const SendOptions& options, const Program& program);
 
 }  // namespace robosync::tool

@@ -1,6 +1,5 @@
-// Go-back-N over the link: data frames up to the board's window are under way, every reply names
-// the offset that is wanted next. May assume nothing of the line. Promises that it ends: with the
-// board's answer, or by its timeout.
+// Go-back-N over the link: data frames up to the board's window are in flight, and every reply names the next offset wanted. The
+// line is not trusted. Promises to end: with the board's answer, or by its timeout.
 #include "rsc/device/uploader.hpp"
 
 #include <algorithm>
@@ -30,8 +29,8 @@ using std::chrono::milliseconds;
 
 // A window of data takes 45 ms on the wire.
 constexpr milliseconds kWindowTimeout{200};
-constexpr std::size_t kBeside = link::kFrameOverhead + 2;  // of a frame on the wire, its payload
-// A shorter frame than this is not sent to fill a window.
+constexpr std::size_t kBeside = link::kFrameOverhead + 2;  // of a frame, besides its payload
+// Frames shorter than this are not sent to fill a window.
 constexpr std::size_t kWorthAFrame = 64;
 
 enum class Until { sent, there };
@@ -43,8 +42,8 @@ public:
     if (!options.base.empty()) base_ = vm::stated_name(options.base);
   }
 
-  // The first window goes out together with the request to begin: if the board wants something else, its reply says so.
-  // `before`: bytes of another request under way.
+  // The first window follows the `begin` request without waiting: if the board wants something else, its reply says so.
+  // `before`: bytes of another request in flight.
   void begin(std::size_t before = 0) {
     under_way_.clear();
     bytes_under_way_ = before;
@@ -55,14 +54,15 @@ public:
     bytes_under_way_ -= before;
   }
 
-  // Returns when all of it is on its way, or the board has it. After begin().
+  // Returns when everything is sent, or when the board has it. After begin().
   void run(Until until, Transport::Clock::time_point give_up) {
     while (!complete_ && (until == Until::there || next_ < image_.size())) {
       if (client_.now() >= give_up) {
-        throw Failure(Exit::outside,
-                      fmt::format("the transfer timed out after {} of {} bytes; the old program "
-                                  "goes on",
-                                  wanted_, image_.size()));
+        throw Failure(
+            Exit::outside,
+            fmt::format(
+                "the transfer timed out after {} of {} bytes; the old program keeps running",
+                wanted_, image_.size()));
       }
       const std::optional<Message> reply = client_.next_reply(kWindowTimeout);
       if (!reply) {
@@ -74,10 +74,10 @@ public:
     }
   }
 
-  // A robot with an owner takes begin() when it was ordered; of others nothing is asked.
+  // A robot with an owner accepts begin() only after this order; other robots need none.
   void order() { client_.order_upload(link::wire_bytes(request()), image_, wish()); }
 
-  // How it is to be activated.
+  // How to activate it.
   link::Activate wish() const {
     return {.session = client_.session(),
             .hash = vm::stated_name(image_),
@@ -86,7 +86,7 @@ public:
             .fresh = static_cast<std::uint8_t>(options_.fresh)};
   }
 
-  // The board does not run the base.
+  // Called when the board does not run the base.
   void forget_base() {
     base_ = {};
     pieces_ = Pieces({}, image_);
@@ -99,7 +99,7 @@ public:
 private:
   struct UnderWay {
     std::uint8_t sequence;
-    std::size_t end;    // the offset wanted next, if it is taken
+    std::size_t end;    // the next offset wanted, if it is accepted
     std::size_t bytes;  // on the wire
   };
 
@@ -123,7 +123,7 @@ private:
     return payload;
   }
 
-  // Frames as long as they can be, since each costs ten bytes more; but at the beginning the window is filled, for no reply
+  // Sends frames of maximum length, since each costs ten bytes more; but the first window is filled completely, because no reply
   // comes before the line is idle.
   void fill_window(bool to_the_brim) {
     while (!complete_ && next_ < image_.size()) {
@@ -150,7 +150,7 @@ private:
         status.next_offset > image_.size()) {
       return;
     }
-    // Frames before the one answered have been answered as well, or that got lost.
+    // Earlier frames have been answered too, or their reply was lost.
     const auto answered = std::ranges::find(under_way_, reply.sequence, &UnderWay::sequence);
     if (answered == under_way_.end()) return take_late(status);
     const std::size_t end = answered->end;
@@ -167,7 +167,7 @@ private:
     }
   }
 
-  // From before we went back: it says less than what is under way, unless this line, or this computer, is that slow.
+  // A reply from before go_back(): it acknowledges less than what is in flight, unless the line or this computer is very slow.
   void take_late(const link::TransferStatus& status) {
     const bool comes = status.state == link::TransferState::receiving ||
                        status.state == link::TransferState::complete;
@@ -178,12 +178,10 @@ private:
 
   void take_begin(const link::TransferStatus& status, std::size_t assumed) {
     if (status.state == link::TransferState::too_large) {
-      throw Failure(
-          Exit::program,
-          fmt::format(
-              "beside the running program the board has {} bytes free, and the image has {}: "
-              "rsc upload --replace ends the running program first",
-              status.next_offset, image_.size()));
+      throw Failure(Exit::program,
+                    fmt::format("next to the running program the board has {} bytes free, and the "
+                                "image has {}: rsc upload --replace ends the running program first",
+                                status.next_offset, image_.size()));
     }
     if (status.state == link::TransferState::other_base) {
       forget_base();
@@ -199,7 +197,7 @@ private:
     if (options_.progress) options_.progress(wanted_, image_.size());
   }
 
-  // A frame got lost, so what was sent after it is not taken: again from what is wanted.
+  // A frame was lost, so the board drops what was sent after it: resend from the offset that it wants.
   void go_back() {
     under_way_.clear();
     bytes_under_way_ = 0;
@@ -216,7 +214,7 @@ private:
   std::deque<UnderWay> under_way_;
   std::size_t bytes_under_way_ = 0;
   std::size_t next_ = 0;    // first byte not sent
-  std::size_t wanted_ = 0;  // as the board said last
+  std::size_t wanted_ = 0;  // the board's latest report
   std::uint8_t begin_sequence_ = 0;
   bool complete_ = false;
   bool reopened_ = false;
@@ -224,8 +222,9 @@ private:
   std::size_t bytes_sent_ = 0;
 };
 
-// Of a transfer that has begun. The request to activate goes out behind the last piece: what got lost before it, the board says.
-// One that was reset, or that another host began a transfer with, has nothing to activate: then the rest is sent again.
+// Finishes a started transfer. The activation request follows the last piece without waiting; the board reports what was lost
+// before it. A board that was reset, or that started another host's transfer, has nothing to activate: then the rest is sent
+// again.
 UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byte> image,
                     const UploadOptions& options, Transport::Clock::time_point start) {
   const auto give_up = start + options.timeout.value_or(patience(image.size()));
@@ -259,7 +258,7 @@ milliseconds patience(std::size_t image_bytes) {
   return milliseconds(10000) + milliseconds(1) * image_bytes;
 }
 
-// Of another board everything may be different, so nothing else is said then.
+// On another board everything may differ, so no other reason is given.
 std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Image& image) {
   std::vector<std::string> found;
   const vm::ImageHeader& header = *image.header;
@@ -278,8 +277,8 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
   }
   if (board.opcode_set != header.opcode_set) {
     found.push_back(
-        fmt::format("the firmware has another set of opcodes ({:04x}) than the image "
-                    "({:04x}): compile it again, or flash the firmware of this release",
+        fmt::format("the firmware has another opcode set ({:04x}) than the image ({:04x}): compile "
+                    "it again, or flash the firmware of this release",
                     board.opcode_set, header.opcode_set));
   }
   const policy::BoardMemory memory{board.arena_begin, board.arena_bytes, board.step_budget};
@@ -327,11 +326,12 @@ void check_result(const link::ActivateResult& result, const Program& program) {
   const vm::Verdict verdict{static_cast<vm::Refusal>(result.refusal),
                             static_cast<vm::Section>(result.section), result.index};
   const std::uint16_t line = source_line(program.image(), verdict.section, verdict.index);
-  throw Failure(Exit::program, fmt::format("the board refused the program: {}; the old one goes on",
-                                           describe_refusal(verdict, line)));
+  throw Failure(Exit::program,
+                fmt::format("the board refused the program: {}; the old one keeps running",
+                            describe_refusal(verdict, line)));
 }
 
-// No firmware has it: better said here than by the board, in fewer words.
+// No firmware has it: the message here is clearer than the board's.
 void refuse_modules_in_files(const vm::Image& image) {
   for (const vm::Sensor& sensor : image.sensors)
     if (policy::is_algorithm(sensor) && sensor.bus >= algorithms::kFirstInFile)

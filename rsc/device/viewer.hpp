@@ -1,5 +1,4 @@
-// Who is told what a watch sees of a board (watch.hpp): somebody who prints it,
-// records it, draws it, passes it on.
+// A receiver of what a watch sees of a board (watch.hpp): it prints it, records it, draws it or passes it on.
 #pragma once
 
 #include <cstddef>
@@ -25,12 +24,10 @@ public:
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  // First of all, and when the board has started again; `silent`: the devices
-  // on its buses that do not answer.
+  // Called first, and after each restart of the board; `silent`: the devices on its buses that do not answer.
   virtual void board(const link::HelloReply& /*board*/, const Past& /*past*/,
                      const std::vector<OnBus>& /*silent*/) {}
-  // What the numbers of events mean from here on; both stay until the next
-  // call. `image`: empty when no program runs.
+  // What the numbers in events mean from here on; both stay valid until the next call. `image`: empty if no program runs.
   virtual void program(const TraceNames& /*names*/, std::span<const std::byte> /*image*/) {}
   virtual void event(const link::Event& /*event*/, const TraceNames& /*names*/) {}
   virtual void log(const std::string& /*text*/) {}
@@ -38,18 +35,16 @@ public:
   // Once a second, if the watch asks for them.
   virtual void threads(ThreadList /*now*/, ThreadList /*before*/) {}
   virtual void status(const link::Status& /*status*/) {}  // once a second
-  // Why something that has happened is not shown.
+  // Why some events are not shown.
   virtual void missed(const std::string& /*why*/) {}
 
-  // A program that it has uploaded, with what its source says of it; null when it has not. `hash`: which one is asked for.
-  // It stays.
+  // The program with this hash, with what its source says of it, if this viewer uploaded it; else null. It stays valid.
   [[nodiscard]] virtual const Program* uploaded(const link::ProgramHash& /*hash*/) const {
     return nullptr;
   }
 
-  // Often. What the viewer wants of the board, and whether it wants to go on;
-  // `session`: null while the line is lost or lent. What it throws ends the
-  // watch.
+  // Called often: the viewer talks to the board here, and returns whether to continue. `session`: null while the line is
+  // lost or lent. An exception ends the watch.
   virtual bool work(Session* /*session*/) { return true; }
 };
 

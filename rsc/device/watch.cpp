@@ -1,5 +1,5 @@
-// May assume nothing of what the board sends. Promises that losses are said,
-// and that the board's trace is off again afterwards.
+// The board's data is not trusted. Promises that losses are reported, and that the board's
+// trace is off afterwards.
 #include "rsc/device/watch.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 using link::MessageType;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{1000};  // for losses, and at the threads
+constexpr milliseconds kLook{1000};  // for checks of losses and threads
 constexpr milliseconds kListen{50};  // before the viewers have their turn
 constexpr milliseconds kTryAgain{500};
 
@@ -39,7 +39,7 @@ Watch::~Watch() {
   try {
     session_->client.set_trace(false);
   } catch (const Failure&) {
-    // The line is gone; the next hello stops the trace.
+    // The line is lost; the next hello stops the trace.
   }
 }
 
@@ -61,7 +61,8 @@ void Watch::learn_program() {
     viewer->program(names_, image_bytes_);
 }
 
-// The board has no units; who has uploaded the program may have its configuration.
+// The board does not know units; the viewer that uploaded the program may know its
+// configuration.
 void Watch::learn_source() {
   for (const Viewer* const viewer : viewers_)
     if (const Program* const program = viewer->uploaded(image_.header->program_hash))
@@ -105,7 +106,7 @@ void Watch::show(std::optional<milliseconds> duration) {
   look(session_->client.status());
 }
 
-// False when the line was lent until the end.
+// False if the line was lent until the end.
 bool Watch::step() {
   try {
     if (session_->transport->wanted() && !lend()) return false;
@@ -128,7 +129,7 @@ bool Watch::step() {
   return true;
 }
 
-// Closed, so that whoever has pulled the plug may put it in again.
+// Closes the port, so that a cable can be plugged in again.
 void Watch::lose(const std::string& why) {
   why_lost_ = why;
   session_.reset();
@@ -142,7 +143,7 @@ void Watch::find_again() {
   try {
     session_ = open_session(place_);
     begin();
-    missed("the line is there again; what happened meanwhile is not shown");
+    missed("the line is back; what happened meanwhile is not shown");
     introduce();
   } catch (const Failure& failure) {
     if (failure.exit() != Exit::outside) throw;
@@ -173,10 +174,10 @@ void Watch::tell(const Message& message) {
 void Watch::tell_event(const Message& message) {
   link::Event event;
   if (!link::decode_event(message.payload, event)) return;
-  // Another program runs: numbers mean something else from here on.
+  // Another program runs: numbers have other meanings from here on.
   if (event.kind == link::EventKind::activated) learn_program();
-  // Ranks, which is how events name threads, are others. Asked for only when
-  // one is named.
+  // Events name threads by rank, and ranks have changed. They are fetched when an event next
+  // names a thread.
   if (event.kind == link::EventKind::priority || event.kind == link::EventKind::lowered)
     names_.threads.clear();
   if (names_thread(event) && names_.threads.empty()) learn_threads();
@@ -191,11 +192,10 @@ void Watch::tell_threads() {
   thread_list_ = now;
 }
 
-// A board that has started again has forgotten that somebody listens, so it is
-// told each time.
+// A restarted board has its trace off, so every status request switches it on again.
 void Watch::look(const link::Status& status) {
   if (status.uptime_us < uptime_us_) {
-    missed("the board has started again");
+    missed("the board has restarted");
     lost_ = 0;
     learn_program();
     introduce();
@@ -207,8 +207,8 @@ void Watch::look(const link::Status& status) {
     viewer->status(status);
 }
 
-// What has come is told first: its numbers are those of the program that has
-// run so far. The other one's hello switches the trace off anyway.
+// Pending messages are passed on first: their numbers belong to the program that has run so
+// far. The other rsc's hello switches the trace off anyway.
 bool Watch::lend() {
   session_->client.set_trace(false);
   while (const auto message = session_->client.next_unasked(milliseconds(0)))

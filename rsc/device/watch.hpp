@@ -1,5 +1,5 @@
-// Watches what a board does as it happens: trace events, log lines, faults. It
-// tells those who view it (viewer.hpp).
+// Watches what a board does as it happens (trace events, log lines, faults) and
+// tells its viewers (viewer.hpp).
 #pragma once
 
 #include <chrono>
@@ -13,25 +13,24 @@
 
 namespace robosync::tool {
 
-// Switches the board's trace on while it lives.
+// The board's trace is on while the object exists.
 class Watch {
 public:
-  // `session` becomes another one when the line is lost, and null until it is
-  // found again. `place`: where. `threads`: once a second they are asked for,
-  // too.
+  // `session` is null while the line is lost, and a new session when it is back.
+  // `place`: where to look for it. `threads`: also ask for the threads once a
+  // second.
   Watch(std::unique_ptr<Session>& session, Place place, std::vector<Viewer*> viewers,
         bool threads = false);
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
-  // Which board it is, why it has started, its last fault, and the devices that
-  // do not answer.
+  // Tells the viewers which board it is, why it started, its last fault, and which
+  // devices do not answer.
   void introduce();
-  // Until the duration is over, the user interrupts (Ctrl-C), or a viewer has
-  // seen enough. Meanwhile another rsc gets the line when it wants it, and a
-  // line that is lost is looked for again. Throws Failure (outside) when it is
-  // lost in the end.
+  // Runs until the duration is over, the user interrupts (Ctrl-C), or a viewer is
+  // done. Meanwhile it lends the line to another rsc that wants it, and looks for a
+  // lost line. Throws Failure (outside) if the line is still lost at the end.
   void show(std::optional<std::chrono::milliseconds> duration);
 
 private:
@@ -57,14 +56,14 @@ private:
   Place place_;
   std::vector<Viewer*> viewers_;
   bool threads_;
-  std::vector<link::ThreadInfo> thread_list_;  // as it was last told
+  std::vector<link::ThreadInfo> thread_list_;  // the latest list
   std::vector<std::byte> image_bytes_;
   vm::Image image_;
   TraceNames names_;
   std::uint32_t lost_ = 0;
-  std::uint64_t uptime_us_ = 0;  // of the board, when it was looked at last
-  bool has_line_ = true;         // it is not lent to another rsc
-  std::string why_lost_;         // the line, while it is
+  std::uint64_t uptime_us_ = 0;  // of the board, at its last status
+  bool has_line_ = true;         // not lent to another rsc
+  std::string why_lost_;         // why the line is lost, while it is
   std::optional<Clock::time_point> until_;
   Clock::time_point next_look_, next_try_;
 };

@@ -13,18 +13,18 @@ namespace robosync::tool {
 namespace {
 
 constexpr std::size_t kIndent = 2;
-constexpr std::size_t kColumn = 44;  // where the source line stands
+constexpr std::size_t kColumn = 44;  // of the source line
 
-// How deep an instruction stands in the blocks of its response.
+// The nesting depth of an instruction in its response.
 class Nesting {
 public:
-  // Before the instruction at `at` is printed.
+  // Call before the instruction at `at` is printed.
   void arrive(std::size_t at, vm::Flow flow) {
     while (!ends_.empty() && ends_.back() == at)
       ends_.pop_back();
     if (vm::ends_loop(flow) && loops_ > 0) --loops_;
   }
-  // After it was printed.
+  // Call after it was printed.
   void leave(vm::Flow flow, std::size_t target) {
     if (flow == vm::Flow::if_else && !ends_.empty()) ends_.pop_back();  // the block before ELSE
     if (flow == vm::Flow::if_begin || flow == vm::Flow::if_else) ends_.push_back(target);
@@ -37,7 +37,7 @@ private:
   std::size_t loops_ = 0;
 };
 
-// Where the instruction at `at` may go on, if it is a jump.
+// The target of the instruction at `at`, if it is a jump.
 std::optional<std::size_t> target_of(std::size_t at, vm::Word word) {
   const auto& operands = vm::info_of(vm::opcode_of(word)).operands;
   if (operands[1] == vm::Operand::ahead) return at + 1 + vm::operand_wide(word);
@@ -46,12 +46,12 @@ std::optional<std::size_t> target_of(std::size_t at, vm::Word word) {
   return std::nullopt;
 }
 
-// The number of a source line beside an instruction, or its text above.
+// Prints the number of a source line next to an instruction, or its text above.
 class Lines {
 public:
   Lines(const vm::Image& image, const SourceLines& source) : image_(image), source_(source) {}
 
-  // Before the instruction at `at` is printed: is it the first of another line?
+  // Before the instruction at `at` is printed: is it the first of a new source line?
   bool arrive(std::size_t at) {
     const std::uint16_t before = line_;
     while (next_ < image_.source_lines.size() && image_.source_lines[next_].word <= at)

@@ -10,7 +10,7 @@ namespace robosync::tool {
 
 using SourceLines = std::vector<std::string>;
 
-// `image` must be verified. `source`: the lines of its program, or none when they are not there.
+// `image` must be verified. `source`: the lines of its program, or empty.
 [[nodiscard]] std::string dump_text(const vm::Image& image, const SourceLines& source = {});
 
 }  // namespace robosync::tool

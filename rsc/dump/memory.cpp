@@ -1,4 +1,4 @@
-// What the program remembers: variables, bands of checks, timers. In the image's order.
+// What the program stores: variables, bands of checks, timers. In the image's order.
 #include <vector>
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ vm::Dimension input_dimension(const vm::Image& image, std::size_t input) {
                           : image.variables[input - channels].dimension;
 }
 
-// The ends of the range of numbers mean that there is no limit.
+// The limits of the number range mean no limit.
 std::string range_text(vm::Value low, vm::Value high, vm::Dimension dimension) {
   if (low == vm::kValueMin && high == vm::kValueMax) return "anything";
   if (low == vm::kValueMin) return "up to " + format_quantity(high, dimension);
@@ -103,7 +103,7 @@ std::string modifiers_text(std::size_t index, const vm::Modifiers& modifiers) {
   return text + "\n";
 }
 
-// A heading only where there is something below it.
+// A heading only if there is something below it.
 template <typename Records, typename Text>
 std::string section(std::string_view heading, const Records& records, Text text_of) {
   if (records.empty()) return {};

@@ -1,4 +1,4 @@
-// Sensors, actuators and what they understand. One line a record, in the image's order.
+// Sensors, actuators and their verbs. One line per record, in the image's order.
 #include <bit>
 #include <vector>
 
@@ -46,7 +46,7 @@ std::string channel_text(const vm::Image& image, std::size_t index) {
       labels_text(image, channel.first_label, channel.label_count));
 }
 
-// With its parameters, by their names.
+// With its named parameters.
 std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
   const robosync_description* const module = algorithms::find_description(sensor.bus);
   std::string text =
@@ -105,7 +105,7 @@ std::string place_of(const vm::Actuator& actuator) {
              : fmt::format("bus {} pin {}", actuator.bus, actuator.pin);
 }
 
-// A panel has a colour in its place.
+// A panel has a colour instead of a speed limit.
 std::string limit_of(const vm::Actuator& actuator) {
   if (vm::drives_panel(actuator.driver))
     return fmt::format("colour {:06x}, lights {} x {}{}", actuator.speed_limit,

@@ -27,7 +27,7 @@ std::string title_of(const Fix& fix, const SourceMap& sources) {
       fix.applicability == compiler::Applicability::placeholder ? ", to be filled in" : "";
   if (old.empty()) return fmt::format("Insert {}{}", shown(fix.replacement), gap);
   if (fix.replacement.empty()) return fmt::format("Remove {}", shown(old));
-  return fmt::format("Replace {} by {}{}", shown(old), shown(fix.replacement), gap);
+  return fmt::format("Replace {} with {}{}", shown(old), shown(fix.replacement), gap);
 }
 
 class ActionFinder {
@@ -47,7 +47,7 @@ public:
       for (const Checked* const checked : desk_.workspace.users_of(*path_))
         look(*checked);
     if (!all_.empty() && wants("source.fixAll"))
-      actions_.push_back({{"title", "Mend all that is certain"},
+      actions_.push_back({{"title", "Apply all certain fixes"},
                           {"kind", "source.fixAll"},
                           {"edit", {{"changes", all_}}}});
     return std::move(actions_);
@@ -94,12 +94,12 @@ private:
       }
     }
   }
-  // Two programs may find the same in a robot.json that they share.
+  // Two programs may report the same error in a shared robot.json.
   void offer(Json action) {
     if (std::ranges::find(actions_, action) == actions_.end())
       actions_.push_back(std::move(action));
   }
-  // What is not there may be in a module that is not used.
+  // An unknown name may be in a module that the program does not USE.
   void offer_module(const Checked& checked, const Diagnostic& diagnostic, const Finding& found) {
     const std::string_view module =
         diagnostic.unknown.empty() ? std::string_view() : compiler::module_with(diagnostic.unknown);
@@ -126,7 +126,7 @@ private:
     };
     return before(first, end_) && before(begin_, last);
   }
-  // Those that do not reach into one another.
+  // Only fixes that do not overlap.
   void add_to_all(Span span, const std::string& uri, const Json& edit) {
     const bool apart = std::ranges::none_of(
         taken_, [&](Span other) { return span.begin <= other.end && other.begin <= span.end; });

@@ -1,5 +1,5 @@
-// What an editor asks about a text, and the answers. Each takes the `params` of the request and gives its `result`; null
-// where there is nothing to say. They throw Refusal, or what nlohmann throws when the request is not as it should be.
+// Answers to an editor's requests about a text. Each takes the `params` of the request and returns its `result`; null if
+// there is nothing to say. They throw Refusal, or what nlohmann throws for a malformed request.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace robosync::tool::lsp {
 
-// The request is understood, and what it asks for cannot be done.
+// The request is valid, but cannot be carried out.
 class Refusal : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
@@ -31,24 +31,24 @@ struct Desk {
 [[nodiscard]] Json rename(Desk desk, const Json& params);
 [[nodiscard]] Json document_symbols(Desk desk, const Json& params);
 [[nodiscard]] Json semantic_tokens(Desk desk, const Json& params);
-[[nodiscard]] Json colour_legend();  // what the numbers of semantic_tokens() mean
+[[nodiscard]] Json colour_legend();  // the meaning of the numbers of semantic_tokens()
 [[nodiscard]] Json folding_ranges(Desk desk, const Json& params);
 [[nodiscard]] Json inlay_hints(Desk desk, const Json& params);
 [[nodiscard]] Json signature_help(Desk desk, const Json& params);
 
-// What the rules of a file cost at most, in instructions, by the line that each begins in; nothing when the program is wrong.
+// The worst-case cost of a file's rules in instructions, by the line on which each starts; nothing if the program has errors.
 [[nodiscard]] std::map<std::uint32_t, std::uint32_t> costs_by_line(const compiler::Result& result,
                                                                    compiler::FileId file);
 
-// What a place in a text is about.
+// A place in a text, and what is there.
 struct Asked {
   const Checked* checked = nullptr;
   compiler::FileId file = 0;
   std::uint32_t offset = 0;
 };
-// Nothing when the text is not part of a program.
+// Nothing if the text is not part of a program.
 [[nodiscard]] std::optional<Asked> asked_at(Desk desk, const Json& params);
-// The address in `textDocument`.
+// The URI in `textDocument`.
 [[nodiscard]] std::string address_in(const Json& params);
 
 }  // namespace robosync::tool::lsp

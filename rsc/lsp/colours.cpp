@@ -25,11 +25,11 @@ enum class Type : std::uint8_t {
   member,
   block
 };
-// Their names in the protocol; a constant is a variable that is read only.
+// Their names in the protocol; a constant is a read-only variable.
 constexpr std::array<std::string_view, 10> kTypes = {
     "keyword",  "number",    "string",   "variable",   "variable",
     "function", "parameter", "property", "enumMember", "class"};
-constexpr unsigned kDeclaration = 1, kReadOnly = 2;  // bits: their order in the legend
+constexpr unsigned kDeclaration = 1, kReadOnly = 2;  // bits, in the order of the legend
 
 Type type_of(query::SymbolKind kind) {
   using K = query::SymbolKind;
@@ -81,7 +81,8 @@ Json colour_legend() {
   return {{"tokenTypes", kTypes}, {"tokenModifiers", {"declaration", "readonly"}}};
 }
 
-// Five numbers a token: lines since the last one, characters since it or the line's beginning, length, type, modifiers.
+// Five numbers per token: lines since the last token, characters since it or since the start of the line, length, type,
+// modifiers.
 Json semantic_tokens(Desk desk, const Json& params) {
   const auto path = path_of(address_in(params));
   const auto users = path ? desk.workspace.users_of(*path) : std::vector<const Checked*>();

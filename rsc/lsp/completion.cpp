@@ -1,4 +1,4 @@
-// textDocument/completion: what could be written at a place.
+// textDocument/completion: what can be written at a position.
 #include "compiler/query/completion.hpp"
 
 #include <utility>
@@ -73,7 +73,7 @@ Json completion(Desk desk, const Json& params) {
   Span typed = found.typed;
   const char first = typed.begin < source.text().size() ? source.text()[typed.begin] : '"';
   const char quote = first == '\'' ? '\'' : '"';
-  // Editors write the second quote with the first one.
+  // Editors insert the closing quote with the opening one.
   const bool closed = typed.end < source.text().size() && typed.end > typed.begin &&
                       source.text()[typed.end] == quote && first == quote;
   if (closed) ++typed.end;

@@ -63,7 +63,7 @@ int severity_of(compiler::Level level) {
   return kSeverities.at(static_cast<std::size_t>(level));
 }
 
-// The label that it is shown at: the first one in a file that is not part of rsc.
+// The label at which it is shown: the first one in a file that is not part of rsc.
 const Label* anchor_of(const Diagnostic& diagnostic, const SourceMap& sources) {
   const auto is_shown = [&](const Label& label, bool primary) {
     return label.primary == primary && !sources.file(label.span.file).name().starts_with('<');
@@ -121,7 +121,7 @@ std::optional<Finding> finding_at(const Label& anchor, const Diagnostic& diagnos
   return Finding{*uri, std::move(result)};
 }
 
-// What a program's use of a module has brought up is wrong in the module: it is shown there as well.
+// Errors that a program's use of a module brings up are also shown in the module.
 const Label* place_in_module(const Diagnostic& diagnostic, const SourceMap& sources) {
   const Label* const anchor = anchor_of(diagnostic, sources);
   for (const Label& label : diagnostic.labels) {
@@ -135,7 +135,7 @@ const Label* place_in_module(const Diagnostic& diagnostic, const SourceMap& sour
 void add(std::optional<Finding> one, Findings& findings) {
   if (!one) return;
   std::vector<Json>& there = findings[one->uri];
-  // Two programs may find the same in a robot.json that they share.
+  // Two programs may report the same error in a shared robot.json.
   if (std::ranges::find(there, one->diagnostic) == there.end())
     there.push_back(std::move(one->diagnostic));
 }

@@ -1,4 +1,4 @@
-// What the compiler says, as the protocol writes it.
+// Converts the compiler's results to the protocol's JSON.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace robosync::tool::lsp {
 
 using Json = nlohmann::json;
 
-// What the editor can do, as it said in `initialize`.
+// The editor's capabilities from `initialize`.
 struct Client {
   bool related_information = false;
   bool markdown = false;
@@ -21,7 +21,7 @@ struct Client {
   bool nested_symbols = false;
 };
 
-// Throws what nlohmann throws when it is none.
+// Throws what nlohmann throws if it is malformed.
 [[nodiscard]] Place place_in(const Json& position);
 
 [[nodiscard]] Json position_json(Place place);
@@ -33,18 +33,18 @@ struct Client {
 [[nodiscard]] compiler::Span without_quotes(const compiler::SourceMap& sources,
                                             compiler::Span span);
 
-// The address of a file of a compilation, as the editor writes it; nothing when there is no such file.
+// The URI of a file of a compilation, as the editor writes it; nothing if there is no such file.
 [[nodiscard]] std::optional<std::string> address_of(const std::string& name,
                                                     const Workspace& workspace);
-// Null when it is in no file.
+// Null if it is in no file.
 [[nodiscard]] Json location_json(const compiler::SourceMap& sources, compiler::Span span,
                                  const Workspace& workspace);
 
-// What a program's compilation found, by the address of the file that each is shown in.
+// A program's diagnostics, by the URI of the file in which each is shown.
 using Findings = std::map<std::string, std::vector<Json>>;
 void add_findings(const Checked& checked, const Workspace& workspace, const Client& client,
                   Findings& findings);
-// One of them; nothing when no file shows it.
+// One of them; nothing if no file shows it.
 struct Finding {
   std::string uri;
   Json diagnostic;

@@ -1,4 +1,4 @@
-// textDocument/formatting: what the text would be in the one style.
+// textDocument/formatting: the text in the standard style.
 #include <algorithm>
 
 #include "compiler/syntax/format.hpp"
@@ -12,7 +12,7 @@ using compiler::SourceFile, compiler::SourceMap;
 
 namespace {
 
-// What differs between two texts, as one change of whole lines.
+// The difference of two texts as one change of whole lines.
 Json difference(const SourceFile& before, std::string_view after, Encoding encoding) {
   const std::string_view text = before.text();
   const auto first =
@@ -21,7 +21,7 @@ Json difference(const SourceFile& before, std::string_view after, Encoding encod
   std::size_t tail = 0;
   while (tail < shorter - first && text[text.size() - 1 - tail] == after[after.size() - 1 - tail])
     ++tail;
-  // Only whole lines: no code point and no end of a line is cut.
+  // Only whole lines, so that no code point or line end is split.
   const std::size_t begin = first == 0 ? 0 : text.rfind('\n', first - 1) + 1;
   const std::size_t next = text.find('\n', std::max(begin, text.size() - tail));
   const std::size_t end = next == std::string_view::npos ? text.size() : next + 1;
@@ -41,10 +41,10 @@ Json formatting(Desk desk, const Json& params) {
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add("", std::string(document->source.text()));
   (void)compiler::parse(sources, file, diagnostics);
-  // What is wrong is shown already.
+  // Errors are shown already.
   if (diagnostics.errors() > 0) return nullptr;
   const auto result = compiler::formatted(sources, file);
-  if (!result) throw Refusal("this text cannot be formatted without changing what it says");
+  if (!result) throw Refusal("this text cannot be formatted without changing its meaning");
   if (*result == document->source.text()) return Json::array();
   return Json::array({difference(document->source, *result, desk.workspace.encoding())});
 }

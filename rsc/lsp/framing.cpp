@@ -13,7 +13,7 @@ constexpr std::string_view kEndOfLine = "\r\n";
 constexpr std::string_view kEndOfHeader = "\r\n\r\n";
 constexpr std::string_view kBlanks = " \t";
 
-// The value of `Content-Length`; nothing when that is not said exactly once, or is no number.
+// The value of `Content-Length`; nothing if it is not there exactly once, or is not a number.
 std::optional<std::size_t> content_length(std::string_view header) {
   std::optional<std::size_t> length;
   while (!header.empty()) {

@@ -1,5 +1,5 @@
-// Messages of the Language Server Protocol in a stream of bytes: a header with their length, then so many bytes. Any bytes
-// may come.
+// Splits a byte stream into messages of the Language Server Protocol: a header with the length, then that many bytes. The
+// input is not trusted.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace robosync::tool::lsp {
 
-// A file of 16 MiB, every byte of it escaped.
+// A file of 16 MiB with every byte escaped.
 inline constexpr std::size_t kLargestMessage = std::size_t{64} * 1024 * 1024;
 inline constexpr std::size_t kLargestHeader = 4096;
 
@@ -16,8 +16,8 @@ struct Frame {
   enum class What {
     incomplete,  // more bytes are needed
     message,
-    too_large,  // it is left out, and the next one can be read
-    broken      // nobody can say where the next message begins
+    too_large,  // skipped; the next message can be read
+    broken      // the start of the next message is unknown
   };
   What what = What::incomplete;
   std::string body{};  // of a message
@@ -28,7 +28,7 @@ public:
   explicit FrameReader(std::size_t largest = kLargestMessage) : largest_(largest) {}
 
   void feed(std::string_view bytes);
-  // The next message. After `broken` all is.
+  // The next message. `broken` is final.
   [[nodiscard]] Frame next();
 
 private:
@@ -38,13 +38,13 @@ private:
   std::size_t largest_;
   std::string bytes_;
   std::size_t taken_ = 0;     // of them
-  std::size_t missing_ = 0;   // bytes of a body that has not come yet, all of it
-  std::size_t left_out_ = 0;  // bytes of a body that is too large, to come
+  std::size_t missing_ = 0;   // length of a body that has not all come yet
+  std::size_t left_out_ = 0;  // bytes still to skip of a body that is too large
   bool in_body_ = false;
   bool broken_ = false;
 };
 
-// The message with its header.
+// The body with its header.
 [[nodiscard]] std::string framed(std::string_view body);
 
 }  // namespace robosync::tool::lsp

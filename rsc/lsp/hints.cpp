@@ -1,5 +1,5 @@
-// textDocument/inlayHint and textDocument/signatureHelp: what a program does not say where it is written. The priority that
-// robot.json gives a BEHAVIOR, what a rule costs at most, and what a verb takes.
+// textDocument/inlayHint and textDocument/signatureHelp: the priority that robot.json gives a BEHAVIOR, the worst-case cost
+// of a rule, and what a verb takes.
 #include <algorithm>
 #include <map>
 
@@ -93,7 +93,7 @@ private:
   Json hints_ = Json::array();
 };
 
-// The words of a line in front of a place.
+// The words of a line before a position.
 std::vector<std::string_view> words_before(const SourceFile& source, std::uint32_t offset) {
   const std::uint32_t line = source.line_of(offset);
   std::string_view text = source.line(line).substr(0, offset - source.line_start(line));
@@ -115,7 +115,7 @@ bool is_target(const compiler::Robot& robot, std::size_t actuator, std::string_v
   });
 }
 
-// What the verb takes: of the actuators that are named behind it, else of all that know it.
+// What the verb takes on the actuators that are named after it, else on all that know it.
 Json signatures_of(const compiler::Robot& robot, std::string_view verb, std::string_view target) {
   Json named = Json::array(), all = Json::array();
   for (std::size_t place = 0; place < robot.actuators.size(); ++place) {
@@ -144,7 +144,7 @@ Json signature_help(Desk desk, const Json& params) {
   const compiler::Result& result = asked->checked->result();
   if (!result.reading->robot) return nullptr;
   const auto words = words_before(result.sources.file(asked->file), asked->offset);
-  // The last verb of the line: a command may stand behind DO, ELSE or OPTION.
+  // The last verb of the line: a command may follow DO, ELSE or OPTION.
   for (std::size_t at = words.size(); at > 0; --at) {
     const std::string_view target = at < words.size() ? words[at] : std::string_view();
     Json found = signatures_of(*result.reading->robot, words[at - 1], target);

@@ -14,7 +14,7 @@ namespace robosync::tool::lsp {
 namespace fs = std::filesystem;
 namespace {
 
-// Empty when this user has no place for such files.
+// Empty if this user has no cache folder.
 fs::path library_folder() {
   const fs::path cache = cache_folder();
   return cache.empty() ? cache : cache / ("stdlib-" ROBOSYNC_VERSION);

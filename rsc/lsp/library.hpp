@@ -1,4 +1,4 @@
-// The modules of the library as files: an editor can show nothing else.
+// The library modules as files, since editors can only show files.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace robosync::tool::lsp {
 
-// A copy of the module `<name>`, written when it is not there. Nothing when there is no such module, or no place for it.
+// The path of a copy of module `<name>`, written if missing. Nothing if there is no such module, or no folder for it.
 [[nodiscard]] std::optional<std::filesystem::path> library_file(std::string_view name);
 [[nodiscard]] bool is_in_library_folder(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// What an editor asks about a name: what it is, where it is declared and used, and whether it may have another.
+// Requests about a name: what it is, where it is declared and used, and whether it can be renamed.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -35,7 +35,7 @@ std::optional<Meant> meant_at(Desk desk, const Json& params) {
   return asked ? meant_by(*asked) : std::nullopt;
 }
 
-// The same place in every program that the text is part of: a robot.json, a module.
+// The same position in every program that the text is part of (a robot.json, a module).
 std::vector<Meant> meant_everywhere(Desk desk, const Json& params) {
   std::vector<Meant> result;
   const auto first = asked_at(desk, params);
@@ -130,7 +130,7 @@ Json references(Desk desk, const Json& params) {
 
 namespace {
 
-// Throws Refusal when it may not have another name.
+// Throws Refusal if it cannot be renamed.
 Meant renamed_at(Desk desk, const Json& params) {
   const auto everywhere = meant_everywhere(desk, params);
   if (everywhere.empty()) throw Refusal("there is no name here");

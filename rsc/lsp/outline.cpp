@@ -1,4 +1,4 @@
-// textDocument/documentSymbol: the items of a program, as a list to jump by.
+// textDocument/documentSymbol: the outline of a program.
 #include "compiler/query/outline.hpp"
 
 #include <utility>

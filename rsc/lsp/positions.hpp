@@ -1,5 +1,5 @@
-// Places as editors count them: lines from 0, and characters of a line in the units that were agreed on, of which UTF-16
-// counts two for what is outside the first 65,536 code points.
+// Positions as editors count them: lines from 0, and characters in the negotiated unit. UTF-16 counts two for code
+// points above 65,535.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@ struct Place {
   std::uint32_t character = 0;
 };
 
-// Units of a piece of text.
+// The length of a text in units.
 [[nodiscard]] std::uint32_t units_in(std::string_view text, Encoding encoding);
-// Bytes of the first so many units of a line: at most all of it. A place inside of a code point is that before it.
+// The byte offset of a unit in a line, at most its length. A position inside a code point becomes the one before it.
 [[nodiscard]] std::size_t bytes_of(std::string_view line, std::uint32_t units, Encoding encoding);
 
 [[nodiscard]] Place place_of(const compiler::SourceFile& source, std::uint32_t offset,
                              Encoding encoding);
-// Behind the end of a line: its end. Behind the last line: the end of the text.
+// Beyond the end of a line: its end. Beyond the last line: the end of the text.
 [[nodiscard]] std::uint32_t offset_of(const compiler::SourceFile& source, Place place,
                                       Encoding encoding);
 

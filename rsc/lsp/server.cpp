@@ -19,7 +19,7 @@ bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
 }
 
-// What stands at the end of these keys is true.
+// Is the value at this path of keys true?
 bool says(const Json& capabilities, std::initializer_list<const char*> keys) {
   const Json* value = &capabilities;
   for (const char* const key : keys) {
@@ -38,7 +38,7 @@ bool lists(const Json& list, std::string_view word) {
 // ---- messages
 
 void Server::send(const Json& message) {
-  // What is quoted from a file on the disk need not be UTF-8.
+  // Text quoted from a file on disk may not be UTF-8.
   send_(message.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
@@ -57,7 +57,7 @@ void Server::receive(std::string_view message) {
   if (!take_back(read)) queue_.push_back(std::move(read));
 }
 
-// `$/cancelRequest`: what has not been begun is not begun. Always true for such a message.
+// `$/cancelRequest`: a request that is still queued is dropped. True for every such message.
 bool Server::take_back(const Json& message) {
   if (member(message, "method") != "$/cancelRequest") return false;
   const Json& params = member(message, "params");
@@ -67,7 +67,7 @@ bool Server::take_back(const Json& message) {
   });
   if (found == queue_.end()) return true;
   queue_.erase(found);
-  send_error(id, error::request_cancelled, "the request was taken back");
+  send_error(id, error::request_cancelled, "the request was cancelled");
   return true;
 }
 
@@ -87,7 +87,7 @@ bool Server::step() {
   return true;
 }
 
-// Why a request cannot be answered now; it is, with an error then.
+// Answers a request that cannot be handled now with an error, and returns the reason.
 std::optional<std::string> Server::refuse(const std::string& method, const Json& id) {
   const auto no = [&](int code, std::string why) {
     send_error(id, code, why);
@@ -221,7 +221,7 @@ Json Server::initialize(const Json& params) {
             {"signatureHelpProvider", {{"triggerCharacters", {" "}}}}}}};
 }
 
-// Files that change behind the editor's back: a robot.json that somebody else writes.
+// Files that change outside the editor, such as a robot.json written by another program.
 void Server::initialized() {
   if (!client_.watches_files) return;
   Json watchers = Json::array({{{"globPattern", "**/*.rsl"}}, {{"globPattern", "**/*.json"}}});
@@ -276,7 +276,7 @@ void Server::idle() {
   for (const Checked* const checked : workspace_.checked_programs())
     add_findings(*checked, workspace_, client_, findings);
   for (const auto& [uri, shown] : shown_)
-    findings[uri];  // what is not found again is taken away
+    findings[uri];  // an empty list clears old diagnostics
   for (const auto& [uri, diagnostics] : findings)
     publish(uri, diagnostics);
 }

@@ -1,5 +1,5 @@
-// The language server without its wires: messages in, messages out, in the order in which they came. It asks nobody for the
-// time: what shall be done when the editor is quiet is done when idle() is called.
+// The language server without I/O: messages in, messages out, in order. It has no clock: what waits until the editor is
+// quiet is done in idle().
 #pragma once
 
 #include <cstddef>
@@ -33,21 +33,21 @@ public:
   using Send = std::function<void(const std::string& message)>;
   explicit Server(Send send) : send_(std::move(send)) {}
 
-  // Takes a message; it is answered by step(), but for one that takes another one back.
+  // Queues a message for step(). A cancellation is handled immediately.
   void receive(std::string_view message);
-  // A message that could not be read, and why.
+  // Reports a message that could not be read, and why.
   void complain(int code, const std::string& why);
-  // Messages that wait for step().
+  // The number of messages that wait for step().
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
-  // Answers the oldest message. False when there is none.
+  // Answers the oldest message. False if there is none.
   bool step();
-  // True when idle() has something to do.
+  // True if idle() has something to do.
   [[nodiscard]] bool is_dirty() const { return dirty_; }
-  // Looks at all programs again, and tells the editor what has changed.
+  // Checks all programs again, and tells the editor what changed.
   void idle();
-  // Set when the editor has asked it to end.
+  // Set once the editor has asked the server to exit.
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
-  // When the line is closed instead: nothing is wrong with that before `initialize` and after `shutdown`.
+  // The exit code if the line is closed instead; that is not an error before `initialize` and after `shutdown`.
   [[nodiscard]] int exit_code_at_end() const { return phase_ == Phase::up ? 1 : 0; }
 
   [[nodiscard]] const Workspace& workspace() const { return workspace_; }
@@ -83,7 +83,7 @@ private:
     std::vector<Json> diagnostics;
     std::optional<std::int64_t> version;
   };
-  std::map<std::string, Shown> shown_;  // by address
+  std::map<std::string, Shown> shown_;  // by URI
 };
 
 }  // namespace robosync::tool::lsp

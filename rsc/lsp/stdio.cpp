@@ -1,5 +1,5 @@
-// One thread: what has come is read before anything is answered, so that a request can be taken back and a text that is being
-// typed is looked at once, at its end.
+// One thread: all available input is read before anything is answered, so that a request can be cancelled, and a text that is
+// being typed is only checked in its latest version.
 #include "rsc/lsp/stdio.hpp"
 
 #include <array>
@@ -17,10 +17,10 @@ namespace robosync::tool::lsp {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{64} * 1024;
-// Messages that wait before no more are read: an editor that never stops does not fill the memory.
+// The most messages that wait before reading stops, so that an editor cannot fill the memory.
 constexpr std::size_t kMostWaiting = 1000;
 
-// False when nobody reads any more.
+// False if the editor has closed its end.
 bool write_all(int out, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = write(out, bytes.data(), bytes.size());
@@ -50,7 +50,7 @@ public:
       }
     }
     while (!server_.exit_code() && server_.step()) {
-      // What came before the line was closed is answered.
+      // Messages that came before the line was closed are answered.
     }
     return server_.exit_code().value_or(broken_ ? 1 : server_.exit_code_at_end());
   }
@@ -107,7 +107,7 @@ private:
 }  // namespace
 
 int serve(int in, int out) {
-  (void)std::signal(SIGPIPE, SIG_IGN);  // a write says so as well
+  (void)std::signal(SIGPIPE, SIG_IGN);  // write() reports it as well
   return Line(in, out).serve();
 }
 

@@ -1,4 +1,4 @@
-// The language server at the two ends of its line.
+// The language server on stdin and stdout.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 namespace robosync::tool::lsp {
 
 // Serves until the editor ends it or the line is closed. Returns the exit code: 0 after `shutdown`,
-// or when nothing was begun, else 1.
+// or if nothing was started, else 1.
 [[nodiscard]] int serve(int in, int out);
 
 }  // namespace robosync::tool::lsp

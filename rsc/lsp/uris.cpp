@@ -10,7 +10,7 @@ constexpr std::string_view kPlain =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
 constexpr std::size_t kEscape = 3;  // "%20"
 
-// The byte that an escape stands for; nothing when it is none.
+// The byte of an escape; nothing if it is not an escape.
 std::optional<char> unescaped(std::string_view text) {
   if (text.size() < kEscape || text.front() != '%') return std::nullopt;
   unsigned value = 0;
@@ -24,7 +24,7 @@ std::optional<char> unescaped(std::string_view text) {
 std::optional<std::filesystem::path> path_of(std::string_view uri) {
   if (!uri.starts_with(kScheme)) return std::nullopt;
   uri.remove_prefix(kScheme.size());
-  const std::size_t slash = uri.find('/');  // behind the name of the computer
+  const std::size_t slash = uri.find('/');  // after the host name
   if (slash == std::string_view::npos) return std::nullopt;
   uri.remove_prefix(slash);
   std::string path;

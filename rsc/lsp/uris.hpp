@@ -1,4 +1,4 @@
-// file:// addresses and paths.
+// file:// URIs and paths.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace robosync::tool::lsp {
 
-// The path of a file; nothing for any other address.
+// The path of a file URI; nothing for any other URI.
 [[nodiscard]] std::optional<std::filesystem::path> path_of(std::string_view uri);
 [[nodiscard]] std::string uri_of(const std::filesystem::path& path);
 

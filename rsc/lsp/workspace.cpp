@@ -18,7 +18,7 @@ namespace {
 
 using compiler::FileId, compiler::SourceFile;
 
-// Programs, and entries, of a folder that are looked at for a robot.json alone.
+// The most programs, and entries of a folder, that are looked at for a lone robot.json.
 constexpr std::size_t kMostPrograms = 32;
 constexpr std::size_t kMostEntries = 2000;
 
@@ -34,13 +34,13 @@ std::optional<fs::path> configuration_of(const fs::path& program, const Texts& t
   }
 }
 
-// What can be said of a program whose configuration, or which itself, cannot be read: how it is written.
+// Checks the syntax of a program that cannot be read, or whose configuration cannot be read.
 compiler::Result without_robot(const std::string& program, const Texts& texts) {
   std::string text;
   try {
     text = texts.read(program);
   } catch (const Failure&) {
-    text.clear();  // what is not there has no mistakes
+    text.clear();  // a missing file has no errors
   }
   compiler::Result result = compiler::compile({program, std::move(text)}, {"robot.json", ""});
   compiler::Diagnostics kept;
@@ -53,7 +53,7 @@ compiler::Result without_robot(const std::string& program, const Texts& texts) {
   return result;
 }
 
-// A robot.json that no program uses yet.
+// Checks a robot.json that no program uses yet.
 compiler::Result alone(const std::string& configuration, const Texts& texts) {
   compiler::Result result = compiler::compile({"", ""}, {configuration, texts.read(configuration)},
                                               {.algorithms = algorithm_modules()});
@@ -109,7 +109,7 @@ std::optional<FileId> Checked::file(const fs::path& path) const {
 void Workspace::open(const std::string& uri, std::int64_t version, std::string text) {
   const std::string name = name_of(uri);
   documents_.insert_or_assign(name, Document{uri, version, SourceFile(name, std::move(text))});
-  forget();  // it may stand for one on the disk
+  forget();  // it may replace one on disk
 }
 
 bool Workspace::change(const std::string& uri, std::int64_t version,

@@ -1,5 +1,4 @@
-// The texts that an editor has open, and what the compiler says about the programs among them. What is not open is read from
-// the disk.
+// The texts that an editor has open, and the compiler's results for the programs among them. Other files are read from disk.
 #pragma once
 
 #include <cstdint>
@@ -25,24 +24,24 @@ struct Document {
 };
 
 struct Change {
-  bool whole = true;  // the text is all of the new one
+  bool whole = true;  // the text replaces the whole document
   Place begin{}, end{};
   std::string text{};
 };
 
-// A program as it was last compiled.
+// A program's last compilation.
 class Checked {
 public:
-  // `trouble`: why it could not be compiled; empty: it was.
+  // `trouble`: why it could not be compiled; empty: it was compiled.
   explicit Checked(compiler::Result result, std::string trouble = {})
       : result_(std::move(result)), trouble_(std::move(trouble)) {}
 
   [[nodiscard]] const compiler::Result& result() const { return result_; }
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   [[nodiscard]] compiler::query::Project project() const;
-  // Made when they are asked for first.
+  // Made on first use.
   [[nodiscard]] const compiler::query::Symbols& symbols() const;
-  // The file that was read from there; nothing when none was.
+  // The file of the compilation at this path; nothing if there is none.
   [[nodiscard]] std::optional<compiler::FileId> file(const std::filesystem::path& path) const;
 
 private:
@@ -57,24 +56,24 @@ public:
   [[nodiscard]] Encoding encoding() const { return encoding_; }
 
   void open(const std::string& uri, std::int64_t version, std::string text);
-  // False when it is not open.
+  // False if it is not open.
   [[nodiscard]] bool change(const std::string& uri, std::int64_t version,
                             const std::vector<Change>& changes);
   [[nodiscard]] bool close(const std::string& uri);
-  // Something on the disk is another now.
+  // Something on disk has changed.
   void forget() { checked_.clear(); }
 
   [[nodiscard]] const Document* find(const std::string& uri) const;
   [[nodiscard]] const Document* find(const std::filesystem::path& path) const;
   [[nodiscard]] const std::map<std::string, Document>& documents() const { return documents_; }
 
-  // Programs to look at: those that are open, and those on the disk that an open robot.json belongs to.
+  // The programs to check: those that are open, and those on disk that use an open robot.json.
   [[nodiscard]] std::set<std::string> programs() const;
-  // Compiles when something that it is made of has changed.
+  // Compiles if one of its files has changed.
   [[nodiscard]] const Checked& checked(const std::string& program);
-  // All of them, but for modules that another one of them uses.
+  // All programs, except modules that another one uses.
   [[nodiscard]] std::vector<const Checked*> checked_programs();
-  // Those that `path` is a part of, the program of this name first.
+  // The programs that `path` is part of; `path` itself first, if it is a program.
   [[nodiscard]] std::vector<const Checked*> users_of(const std::filesystem::path& path);
 
   // Texts.
@@ -87,11 +86,11 @@ private:
                                   std::set<std::string>& programs) const;
 
   Encoding encoding_ = Encoding::utf16;
-  std::map<std::string, Document> documents_;  // by path, or by address where there is none
+  std::map<std::string, Document> documents_;  // by path, or by URI if there is none
   std::map<std::string, std::unique_ptr<const Checked>> checked_;
 };
 
-// The name that a document has in the workspace: its path, or its address where it has none.
+// A document's name in the workspace: its path, or its URI if it has none.
 [[nodiscard]] std::string name_of(const std::string& uri);
 
 }  // namespace robosync::tool::lsp

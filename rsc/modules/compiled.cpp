@@ -27,7 +27,7 @@ void write_text(const fs::path& path, std::string_view text) {
   write_output(path, std::as_bytes(std::span(text)));
 }
 
-// So that a module alone finds the interface, too; one that has it beside itself takes that.
+// Lets a lone module find the interface; a copy next to the module comes first.
 fs::path with_header(const WorkFolder& folder) {
   write_text(folder.path() / "robosync_module.h", module_header());
   return folder.path();
@@ -45,8 +45,8 @@ std::string compiler() {
 
 void run_compiler(const Command& command, const std::string& source, const char* for_what) {
   if (!is_installed(command.front()))
-    throw Failure(Exit::outside, fmt::format("there is no compiler {} to compile {} with",
-                                             command.front(), source));
+    throw Failure(Exit::outside,
+                  fmt::format("there is no compiler {} to compile {}", command.front(), source));
   if (run_program(command) != 0)
     throw Failure(Exit::program, fmt::format("{} does not compile{}", source, for_what));
 }
@@ -99,8 +99,8 @@ WorkFolder::~WorkFolder() {
   fs::remove_all(path_, ignored);
 }
 
-// Where arithmetic goes wrong it traps: gcc knows overflow, shifts, division and what lies beyond an array. A pointer to nothing is left to
-// the memory, which says better what was wrong.
+// Undefined arithmetic traps: overflow, shifts, division and array bounds. Null pointers are left to memory protection, which
+// gives a better message.
 std::string compile_for_here(const std::string& source, const WorkFolder& folder) {
   const fs::path library = folder.path() / fs::path(source).stem().concat(".so");
   run_compiler({compiler(), "-std=c11", "-O2", "-g", "-fPIC", "-shared", "-Wall", "-Wextra",
@@ -115,7 +115,8 @@ bool can_count() {
   return is_installed(kCrossCompiler) && is_installed(kEmulator) && is_installed("timeout");
 }
 
-// Without an FPU each operation is a call of the compiler's library, by a name of the ABI ("Run-time ABI for the Arm Architecture", 5.1.2).
+// Without an FPU each floating-point operation calls a library function with an ABI name ("Run-time ABI for the Arm
+// Architecture", 5.1.2).
 bool uses_floating_point(const std::string& source, const WorkFolder& folder) {
   const fs::path object = folder.path() / "without_fpu.o";
   run_compiler({kCrossCompiler, "-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=soft", "-Os", "-std=c11",
@@ -148,8 +149,7 @@ std::uint32_t count_instructions(const std::string& source, const Try& one,
        "-monitor", "none", "-serial", "none", "-chardev", "file,id=said,path=" + out.string(),
        "-semihosting-config", "enable=on,target=native,chardev=said", "-kernel", elf.string()});
   if (exit != 0)
-    throw Failure(Exit::program,
-                  fmt::format("{} does not come to an end on an emulated Cortex-M4", source));
+    throw Failure(Exit::program, fmt::format("{} does not end on an emulated Cortex-M4", source));
   return static_cast<std::uint32_t>(std::strtoul(read_text(out).c_str(), nullptr, 10));
 }
 

@@ -1,4 +1,4 @@
-// The C file of a module, compiled: for this computer, and for a Cortex-M4 in QEMU, where the instructions that it executes are counted.
+// Compiles the C file of a module for this computer, and for a Cortex-M4 in QEMU, which counts its instructions.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace robosync::tool {
 
-// A folder that goes away with the object. Throws Failure (outside) when there can be none.
+// A temporary folder that is removed with the object. Throws Failure (outside) if it cannot be made.
 class WorkFolder {
 public:
   WorkFolder();
@@ -24,18 +24,18 @@ private:
   std::filesystem::path path_;
 };
 
-// NAME.so of NAME.c, in `folder`, where arithmetic that C leaves undefined stops it. Throws Failure (program) when the compiler
-// refuses it; it has said why.
+// Compiles NAME.c to NAME.so in `folder`; arithmetic that C leaves undefined traps. Throws Failure (program) if the compiler
+// rejects it; it has printed the reason.
 [[nodiscard]] std::string compile_for_here(const std::string& source, const WorkFolder& folder);
 
-// Whether a cross compiler and QEMU are here.
+// Whether a cross compiler and QEMU are installed.
 [[nodiscard]] bool can_count();
 
-// Does what a Cortex-M4 does for the C file need numbers with a fraction? Needs arm-none-eabi-gcc.
+// Does the C file use floating point on a Cortex-M4? Needs arm-none-eabi-gcc.
 [[nodiscard]] bool uses_floating_point(const std::string& source, const WorkFolder& folder);
 
-// The most instructions that one process() of the module in `source` executed, of all that these tries ask of it. Throws Failure
-// (program) when it cannot be compiled for the Cortex-M4, or does not come to an end there.
+// The most instructions that one process() call of the module in `source` executes on the samples of `one`. Throws Failure
+// (program) if it does not compile for the Cortex-M4, or does not end there.
 [[nodiscard]] std::uint32_t count_instructions(const std::string& source, const Try& one,
                                                const robosync_module& module,
                                                const WorkFolder& folder);

@@ -1,4 +1,4 @@
-# Writes what texts.hpp gives into one C++ file:
+# Writes the texts of texts.hpp into one C++ file:
 #   cmake -DOUT=FILE -DSOURCE=TOP_OF_THE_REPOSITORY -P embed_texts.cmake
 # The module itself is the one that docs/algorithms.md shows.
 function(embed file_name text)

@@ -1,4 +1,4 @@
-// What the tool has with it to make and to try modules: so it needs nothing beside itself.
+// Files embedded in the tool for making and testing modules, so that it needs no other files.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace robosync::tool {
 
-// A module to begin with, and a robot that uses it. Where they say "heartbeat", its name belongs.
+// A template module, and a robot that uses it. "heartbeat" stands for the module's name.
 [[nodiscard]] std::span<const TemplateFile> new_module_files();
 // robosync_module.h.
 [[nodiscard]] std::string_view module_header();

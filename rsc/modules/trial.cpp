@@ -20,9 +20,9 @@ using module_files::Process;
 using module_files::Sizes;
 using module_files::State;
 
-constexpr std::size_t kSamples = 400;  // of each try
+constexpr std::size_t kSamples = 400;  // in each try
 
-// --- what it is tried with ---
+// --- inputs ---
 
 std::vector<Config> configs_for(const robosync_description& names) {
   const robosync_module& module = *names.module;
@@ -42,7 +42,7 @@ std::vector<Config> configs_for(const robosync_description& names) {
   return configs;
 }
 
-// A quarter each: noise of a few units, jumps between two levels, anything, and the ends of all numbers.
+// A quarter each: noise of a few units, jumps between two levels, random values, and the extremes of the number range.
 Inputs draw(std::mt19937& random, std::size_t place) {
   Inputs inputs{};
   for (std::int32_t& input : inputs) {
@@ -65,7 +65,7 @@ Inputs draw(std::mt19937& random, std::size_t place) {
   return inputs;
 }
 
-// --- what it promises ---
+// --- promises ---
 
 class Trial {
 public:
@@ -78,12 +78,12 @@ public:
     add("it can be loaded, and describes itself", wrong);
     if (!wrong.empty()) return findings_;
     tries_ = tries_for(description_.in_c());
-    add("it needs no more memory than there is, and says what it costs", mistake_in_sizes());
+    add("it fits in the memory there is, and states its cost", mistake_in_sizes());
     if (ended()) return findings_;
-    add("it keeps to its memory, and comes to an end", mistake_in_runs());
+    add("it stays in its memory, and returns", mistake_in_runs());
     if (ended()) return findings_;
-    add("what it puts out lies in its ranges, and it says what has changed", outputs_);
-    add("it comes to the same every time, whatever its scratch held", mistake_in_repeating());
+    add("its outputs are in range, and it reports those that changed", outputs_);
+    add("it gives the same outputs every time, whatever its scratch held", mistake_in_repeating());
     return findings_;
   }
 
@@ -113,7 +113,7 @@ private:
                            std::uint32_t{ROBOSYNC_MOST_BYTES}, shown(one));
       if (sizes.cost == 0) return "its cost() is 0 (" + shown(one) + ")";
       if (sizes.state != again.state || sizes.scratch != again.scratch || sizes.cost != again.cost)
-        return "it says something else when it is asked again (" + shown(one) + ")";
+        return "it gives another answer when asked again (" + shown(one) + ")";
     }
     return "";
   }
@@ -125,8 +125,7 @@ private:
     return "";
   }
 
-  // What it left at its outputs after each sample; nothing when it ended on the way. Of what is wrong with them the first thing is
-  // noted.
+  // Its outputs after each sample; nothing if it ended early. The first error in them is noted.
   std::optional<std::vector<Outputs>> run(Process& module, const Try& one,
                                           std::uint8_t scratch_holds) {
     std::vector<Outputs> left;
@@ -139,7 +138,7 @@ private:
       std::uint32_t changed = 0;
       if (!module.process(one.config, inputs, state, outputs, changed, scratch_holds))
         return std::nullopt;
-      if (changed == ROBOSYNC_FAILED) break;  // it may
+      if (changed == ROBOSYNC_FAILED) break;  // allowed
       left.push_back(outputs);
       const std::string wrong = mistake_in_outputs(before, outputs, changed);
       if (outputs_.empty() && !wrong.empty())
@@ -162,19 +161,20 @@ private:
       const bool has_changed = before[i] != after[i];
       if (has_changed && after[i] != ROBOSYNC_UNKNOWN &&
           (after[i] < output.least || after[i] > output.most))
-        return fmt::format("{} is {}, and its range is {} to {}", output.name, after[i] / 1000.0,
-                           output.least / 1000.0, output.most / 1000.0);
+        return fmt::format("{} is {}, outside its range of {} to {}", output.name,
+                           after[i] / 1000.0, output.least / 1000.0, output.most / 1000.0);
       if (output.label_count != 0 && after[i] != ROBOSYNC_UNKNOWN && after[i] % ROBOSYNC_ONE != 0)
-        return fmt::format("{} has words, and {} is none of them", output.name, after[i] / 1000.0);
+        return fmt::format("{} has words, and {} is not one of them", output.name,
+                           after[i] / 1000.0);
       if (has_changed && (changed >> i & 1) == 0)
-        return fmt::format("{} has changed, and process() did not say so", output.name);
+        return fmt::format("{} changed, and process() did not report it", output.name);
     }
     if (changed >> names.module->outputs != 0)
-      return "process() says that an output has changed that there is not";
+      return "process() reports a change of an output that does not exist";
     return "";
   }
 
-  // In another process, from last to first, with another scratch.
+  // In another process, from last to first, with different scratch content.
   std::string mistake_in_repeating() {
     Process other(file_);
     for (auto one = tries_.rbegin(); one != tries_.rend(); ++one) {
@@ -184,7 +184,7 @@ private:
       const auto [a, b] = std::ranges::mismatch(*first, *second);
       if (a == first->end()) continue;
       const auto place = static_cast<std::size_t>(a - first->begin());
-      return fmt::format("sample {} came to something else when it was tried again ({})", place + 1,
+      return fmt::format("sample {} gave other outputs when it was tried again ({})", place + 1,
                          shown(*one));
     }
     return "";
@@ -194,7 +194,7 @@ private:
   Process module_;
   module_files::Description description_;
   std::vector<Try> tries_;
-  std::string outputs_;  // what was wrong with them first
+  std::string outputs_;  // the first error in the outputs
   std::vector<Finding> findings_;
 };
 

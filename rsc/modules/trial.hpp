@@ -1,4 +1,4 @@
-// A module in a file held against its own declaration, and against robosync_module.h.
+// Tests a module in a file against its declaration and against robosync_module.h.
 #pragma once
 
 #include <string>
@@ -9,22 +9,22 @@
 namespace robosync::tool {
 
 struct Finding {
-  std::string promise;  // "it comes to the same every time"
-  std::string broken;   // how; empty: it is kept
+  std::string promise;  // "it gives the same outputs every time"
+  std::string broken;   // how it is broken; empty: it holds
 };
 
-// What a module was tried with: parameters, and sample after sample.
+// The inputs of a test: parameters, and a series of samples.
 struct Try {
   module_files::Config config{};
   std::uint32_t period_ms = 0;
   std::vector<module_files::Inputs> samples;
 };
 
-// Usual parameters and those at the ends of their ranges, the shortest, usual and longest period, inputs that hardly move, that
-// jump, and the largest there are. The same for the same module.
+// Default parameters and both ends of their ranges; the shortest, the usual and the longest period; inputs that hardly change,
+// that jump, and that are as large as possible. The same for the same module.
 [[nodiscard]] std::vector<Try> tries_for(const robosync_description& module);
 
-// Up to the first promise that is broken in a way that ends the module.
+// Stops at the first broken promise that ends the module.
 [[nodiscard]] std::vector<Finding> try_module(const std::string& file);
 
 }  // namespace robosync::tool

@@ -27,7 +27,7 @@ struct Section {
   std::vector<Line> lines;
 };
 
-// How many bytes the character at the front has, when it is printable; else 0.
+// The length in bytes of the first character if it is printable; else 0.
 std::size_t printable(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   if (first < 0x80) return first >= 0x20 && first != 0x7F ? 1 : 0;
@@ -44,7 +44,7 @@ std::size_t width_of(std::string_view text) {
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-// As wide as a column of the table.
+// Padded to the width of a table column.
 std::string cell(std::string_view text, std::size_t columns) {
   std::string cut = fitted(text, columns);
   cut.append(columns - std::min(columns, width_of(cut)), ' ');
@@ -110,7 +110,7 @@ Section variables(const Model& model, const View& view) {
   return section;
 }
 
-// Always there: that nothing is wrong is worth a line.
+// Always shown, even if nothing is wrong.
 Section safety(const Model& model) {
   Section section{"SAFETY", {}};
   if (model.is_stopped())
@@ -124,7 +124,7 @@ Section safety(const Model& model) {
   return section;
 }
 
-// What is not as usual comes first: the rest may not have a place.
+// Unusual states come first: the rest may be cut off.
 Line title(const Model& model, const View& view) {
   Line line;
   if (view.lost) line.push_back({"LINE LOST ", Style::bad});
@@ -147,7 +147,8 @@ Line sums(const Model& model) {
            bad ? Style::bad : Style::quiet}};
 }
 
-// Takes lines from the longest until all fit, of two as long from the lower one; what is left out is counted.
+// Removes lines from the longest section until all fit, of equal ones from the lower one, and shows how many
+// are left out.
 void shorten(std::vector<Section>& sections, std::size_t room) {
   std::erase_if(sections, [](const Section& section) { return section.lines.empty(); });
   std::size_t all = sections.size();  // their headings
@@ -168,7 +169,7 @@ void shorten(std::vector<Section>& sections, std::size_t room) {
   }
 }
 
-// The newest that has a place, oldest first.
+// The newest lines that fit, oldest first.
 std::vector<Line> newest(const Model& model, const View& view, std::size_t room) {
   std::vector<Line> lines;
   for (auto line = model.log().rbegin(); line != model.log().rend() && lines.size() < room; ++line)
@@ -208,7 +209,7 @@ std::string sparkline(const SensorRow& sensor, std::uint64_t now_us, std::uint64
   const auto& levels = blocks ? kBlocks : kMarks;
   std::string line;
   for (std::size_t i = 0; i < columns; ++i) {
-    // What it was at the end of the column's time.
+    // The value at the end of the column's time span.
     const std::uint64_t ago_us = span_us * (columns - 1 - i) / columns;
     std::optional<vm::Value> then;
     for (const auto& [at, value] : sensor.history)

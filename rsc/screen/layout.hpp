@@ -19,29 +19,28 @@ struct Piece {
 };
 using Line = std::vector<Piece>;
 
-// What the person has chosen.
+// What the user has chosen.
 struct View {
   std::string port;
-  std::string filter;  // only what has it in its name or its words; empty: all
-  std::string prompt;  // what is being asked for and typed, in place of the
-                       // keys; empty: nothing
+  std::string filter;  // show only what contains it in its name or text; empty: all
+  std::string prompt;  // the question and what is typed, instead of the
+                       // keys; empty: no question
   bool paused = false;
-  bool lost = false;   // the line
+  bool lost = false;   // the line is lost
   bool blocks = true;  // the terminal has block characters (UTF-8)
 };
 
-// Exactly `rows` lines, none wider than `columns`. No character of them
-// controls a terminal, whatever a robot says.
+// Exactly `rows` lines, none wider than `columns`, without control characters, whatever a
+// robot sends.
 [[nodiscard]] std::vector<Line> lay_out(const Model& model, const View& view, std::size_t rows,
                                         std::size_t columns);
 
-// The last `span_us` until `now_us` in `columns` characters, from the least to
-// the most that was; a space where it was unknown.
+// The last `span_us` until `now_us` in `columns` characters, scaled from the lowest to the
+// highest value; a space where it was unknown.
 [[nodiscard]] std::string sparkline(const SensorRow& sensor, std::uint64_t now_us,
                                     std::uint64_t span_us, std::size_t columns, bool blocks);
 
-// At most `columns` characters of a text in UTF-8; others than printable ones
-// become "?".
+// At most `columns` characters of a UTF-8 text; unprintable ones become "?".
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t columns);
 
 }  // namespace robosync::tool::screen

@@ -1,5 +1,4 @@
-// See model.hpp. May assume nothing of the numbers in events: they come from
-// the line.
+// See model.hpp. The numbers in events come from the line and are not trusted.
 #include "rsc/screen/model.hpp"
 
 #include <algorithm>
@@ -22,7 +21,7 @@ void keep(std::deque<std::string>& lines, const std::string& line, std::size_t m
   if (lines.size() > most) lines.pop_front();
 }
 
-// A person reads its value; NEXT and ANY remember theirs in names with a space.
+// Excludes signals, timers, bands and the hidden variables of NEXT and ANY, whose names have a space.
 bool is_shown(const vm::Image& image, const vm::Variable& variable) {
   return variable.kind != vm::VariableKind::signal && variable.kind != vm::VariableKind::timer &&
          variable.kind != vm::VariableKind::band &&
@@ -135,7 +134,7 @@ void Model::see_value(const link::Event& event, const TraceNames& names) {
     const bool known = event.kind == EventKind::input && event.value_count > 0;
     row.value = known ? reader.shown(reader.value(0)) : "unknown";
     row.history.emplace_back(event.time_us, known ? std::optional(reader.value(0)) : std::nullopt);
-    // The one before the window says what it began with.
+    // The last value before the window is its initial value.
     while (row.history.size() > 1 && row.history[1].first + kHistoryUs < now_us_)
       row.history.pop_front();
     return;
@@ -212,7 +211,7 @@ void Model::is_denied(const link::Event& event, const TraceNames& names) {
   const bool then = event.value_count > 0 && event.values[0] != 0;
   const std::uint16_t response = then ? rule.then_response : rule.else_response;
   if (response >= image_->responses.size()) return;
-  // Which of them it was that another one has.
+  // The actuators that another behaviour holds.
   for (std::size_t i = 0; i < owners_.size(); ++i)
     if ((image_->responses[response].actuators >> i & 1) != 0 && owners_[i] &&
         behavior_of(*owners_[i]) != behavior)

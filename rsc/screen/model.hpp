@@ -1,5 +1,4 @@
-// What is known of a robot that is watched, ready to be shown: each thing as
-// words, whatever draws them (layout.hpp).
+// What is known of a watched robot, as text ready to be drawn (layout.hpp).
 #pragma once
 
 #include <cstddef>
@@ -18,19 +17,20 @@ namespace robosync::tool::screen {
 struct SensorRow {
   std::string name, value, band;
   bool is_virtual = false;
-  std::deque<std::pair<std::uint64_t, std::optional<vm::Value>>> history;  // of the last kHistoryUs
+  std::deque<std::pair<std::uint64_t, std::optional<vm::Value>>>
+      history;  // over the last kHistoryUs
 };
 
 struct BehaviorRow {
-  std::string name, state;  // "running", "waiting"; empty: nothing to do
+  std::string name, state;  // "running", "waiting"; empty: idle
   int priority = 0, written = 0;
-  std::string denied;  // the last time: by whom and when
+  std::string denied;  // the last time: by what and when
 };
 
 struct ActuatorRow {
-  std::string name, owner, command;  // empty: nobody has it, nothing goes on
+  std::string name, owner, command;  // empty: no owner, no command
   bool halted = false;
-  std::string denied;  // who wanted it last, and did not get it
+  std::string denied;  // the last one that was denied it
 };
 
 struct ThreadSums {
@@ -88,7 +88,7 @@ private:
   std::vector<std::pair<std::string, std::string>> variables_;
   std::vector<std::optional<std::size_t>> row_of_variable_;
   std::vector<std::string> trips_;
-  std::map<std::size_t, bool> running_;             // rules whose responses run; true: it waits
+  std::map<std::size_t, bool> running_;             // rules with a running response; true: waiting
   std::vector<std::optional<std::size_t>> owners_;  // of each actuator: the rule
   ThreadSums sums_;
   std::uint32_t lost_events_ = 0;

@@ -117,9 +117,9 @@ bool Screen::take_command(int key, Session* session) {
       });
       break;
     case 'b':
-      act(session, "the program before runs again", [](Client& client) {
+      act(session, "the previous program runs again", [](Client& client) {
         roll_back(client);
-        client.set_trace(true);  // its hello has ended it
+        client.set_trace(true);  // the hello of roll_back() has switched it off
       });
       break;
     default:
@@ -145,7 +145,8 @@ void Screen::take_text(int key, Session* session) {
     return;
   }
   view_.prompt =
-      (asks_ == Asks::filter ? "show only what has: " : "reading, as touch.LEVEL=2: ") + typed_;
+      (asks_ == Asks::filter ? "show only lines with: " : "reading, such as touch.LEVEL=2: ") +
+      typed_;
 }
 
 void Screen::force(const std::string& reading, Session* session) {
@@ -167,12 +168,11 @@ void Screen::force(const std::string& reading, Session* session) {
   }
 }
 
-// What the board does not want is said. Who does not answer at all is the
-// watch's business.
+// A refusal by the board is shown. A board that does not answer is left to the watch.
 void Screen::act(Session* session, const std::string& done,
                  const std::function<void(Client&)>& what) {
   if (session == nullptr) {
-    model_.say("not now: the line is not there");
+    model_.say("not now: the line is lost");
     return;
   }
   try {

@@ -1,5 +1,4 @@
-// The full screen of `rsc monitor`: what a watch sees, and keys for what a
-// person wants of the robot.
+// The full screen of `rsc monitor`: shows what a watch sees, and has keys to control the robot.
 #pragma once
 
 #include <chrono>
@@ -47,7 +46,7 @@ private:
   const vm::Image* image_ = nullptr;  // of the running program
   Asks asks_ = Asks::nothing;
   std::string typed_;
-  std::ostringstream errors_;  // what others write on stderr meanwhile
+  std::ostringstream errors_;  // what is written to stderr meanwhile
   std::streambuf* stderr_before_;
   std::chrono::steady_clock::time_point next_draw_;
 };

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include <langinfo.h>
-#define NCURSES_NOMACROS  // move() and erase() are names of C++, too
+#define NCURSES_NOMACROS  // its macros clash with move() and erase() of C++
 #include <ncurses.h>
 #include <termios.h>
 #include <unistd.h>
@@ -24,11 +24,10 @@ constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr std::array kEnds = {SIGHUP, SIGQUIT};  // SIGINT and SIGTERM end the watch
 
 volatile std::sig_atomic_t over = 0;
-termios before{};  // as the terminal was
+termios before{};  // the terminal's settings before
 
-// Nothing but calls that a signal handler may make. The sequences are those of
-// every terminal that is in use: back to the ordinary screen, with its cursor,
-// in its colours.
+// Only async-signal-safe calls. The sequences work on all terminals in use: back to the
+// ordinary screen, cursor and colours.
 void restore_at_once() {
   constexpr std::string_view kBack = "\x1b[?1049l\x1b[?25h\x1b[0m\r\n";
   tcsetattr(STDIN_FILENO, TCSANOW, &before);

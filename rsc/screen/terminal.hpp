@@ -1,5 +1,4 @@
-// A terminal that is drawn on as a whole, by ncurses. The only files that know
-// that library.
+// A full-screen terminal, by ncurses. Only terminal.hpp and terminal.cpp use that library.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +10,11 @@
 
 namespace robosync::tool::screen {
 
-// While it lives the screen is its own. Whatever ends the program, the terminal
-// is as it was before: an exception, and the signals that a program can see.
+// Takes over the screen while the object exists. The terminal is restored however the program
+// ends: by an exception or by any signal that can be caught.
 class Terminal {
 public:
-  // Null when stdin or stdout is no terminal, or one that nobody knows.
+  // Null if stdin or stdout is not a terminal, or is of an unknown type.
   [[nodiscard]] static std::unique_ptr<Terminal> open();
   ~Terminal();
   Terminal(const Terminal&) = delete;
@@ -24,19 +23,19 @@ public:
   std::size_t rows() const;
   std::size_t columns() const;
   bool has_blocks() const { return has_blocks_; }
-  // Someone has closed it, or wants the program to end.
+  // It was closed, or the program was told to end.
   bool is_over() const;
 
   void draw(const std::vector<Line>& lines);
-  // A character of ASCII, kEnter, kBackspace, kEscape; kNone when nothing was
-  // typed, kResized when the size is another one.
+  // An ASCII character, kEnter, kBackspace or kEscape; kNone if nothing was typed, kResized
+  // if the size changed.
   int key();
   static constexpr int kNone = -1, kResized = -2, kEnter = '\n', kBackspace = 8, kEscape = 27;
 
 private:
   Terminal();
 
-  struct Screen;  // of ncurses
+  struct Screen;  // ncurses's own
   std::unique_ptr<Screen> screen_;
   bool has_blocks_ = false;
 };

@@ -18,7 +18,7 @@ std::string in_html(std::string_view text) {
   return escaped(text, {{'<', "&lt;"}, {'&', "&amp;"}});
 }
 
-// No text in it can end the element it stands in.
+// Escapes a text so that it cannot end its HTML element.
 std::string in_script(const Json& run) {
   return escaped(run.dump(-1, ' ', false, Json::error_handler_t::replace), {{'<', "\\u003c"}});
 }

@@ -1,4 +1,4 @@
-// The page that shows a run: one HTML file that needs no network.
+// The page that shows a run: one HTML file that works offline.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace robosync::tool {
 
-// The page's parts, from this folder.
+// The parts of the page, from this folder.
 struct PageParts {
   const char *html, *style, *script;
 };
 [[nodiscard]] PageParts page_parts();
 
-// `run`: from TimelineRecorder. `title`: of the page. `source`: the lines that the rules' lines mean; may be empty.
+// `run`: from TimelineRecorder. `source`: the lines that the rules' line numbers refer to; may be empty.
 [[nodiscard]] std::string timeline_page(const std::string& title, nlohmann::ordered_json run,
                                         const std::vector<std::string>& source);
 

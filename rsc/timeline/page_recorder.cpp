@@ -11,8 +11,8 @@
 
 namespace robosync::tool {
 
-// When another rsc has had the line the same program may go on, and so does its
-// page.
+// After another rsc had the line, the same program may still be running; its page then
+// continues.
 void PageRecorder::program(const TraceNames& names, std::span<const std::byte> image) {
   const bool goes_on = program_ && std::ranges::equal(program_->bytes(), image);
   if (goes_on) return;
@@ -34,7 +34,7 @@ void PageRecorder::event(const link::Event& event, const TraceNames& names) {
 
 void PageRecorder::write(const std::string& file, const std::string& title) {
   if (!timeline_)
-    throw Failure(Exit::program, "nothing has happened that a page could show; none was written");
+    throw Failure(Exit::program, "nothing happened that a page could show; none was written");
   const std::vector<std::string> none;
   const auto& lines = names_.origin == nullptr ? none : names_.origin->lines;
   const std::string page = timeline_page(title, timeline_->finish(end_us_), lines);

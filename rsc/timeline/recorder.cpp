@@ -31,7 +31,8 @@ Json value_of(vm::Value value) {
   return value == vm::kUnknown ? Json(nullptr) : Json(value);
 }
 
-// What NEXT and ANY remember: no name in a program has a space. TIMERs and SIGNALs have no value that a person would read.
+// Excludes the hidden variables of NEXT and ANY, whose names have a space, and TIMERs and SIGNALs, which have no readable
+// value.
 bool is_shown(const vm::Image& image, const vm::Variable& variable) {
   return variable.kind != vm::VariableKind::signal && variable.kind != vm::VariableKind::timer &&
          image.string(variable.name).find(' ') == std::string_view::npos;
@@ -44,7 +45,7 @@ Json labels_of(const vm::Image& image, std::size_t first, std::size_t count) {
   return labels;
 }
 
-// What a person should read by itself.
+// Events shown as messages.
 bool is_message(EventKind kind) {
   switch (kind) {
     case EventKind::log:
@@ -95,7 +96,7 @@ void TimelineRecorder::add_rules() {
   }
 }
 
-// Channels first, then variables: as the image numbers its inputs.
+// Channels first, then variables, as the image numbers its inputs.
 void TimelineRecorder::add_signals() {
   const compiler::WrittenUnits none;
   const compiler::WrittenUnits& written = names_.origin == nullptr ? none : names_.origin->units;
@@ -139,7 +140,7 @@ int TimelineRecorder::behavior_of(std::size_t rule) const {
   return -1;
 }
 
-// Who looks at a robot that runs already does not know what its variables are.
+// When watching starts in the middle of a run, the initial values are not known.
 void TimelineRecorder::begin(const link::Event& first) {
   if (first.kind == EventKind::activated) return;
   page_["begin_us"] = first.time_us;
@@ -157,7 +158,7 @@ void TimelineRecorder::see(const link::Event& event) {
   see_subject(reader);
 }
 
-// What is drawn in the lane of whom the event is about.
+// Draws the event in the lane of its subject.
 void TimelineRecorder::see_subject(const EventReader& reader) {
   const link::Event& event = reader.event();
   const auto is_one_of = [&](About kind, const auto& list) {

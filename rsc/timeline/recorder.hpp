@@ -1,5 +1,4 @@
-// What a run looked like, for the page that shows it (page.hpp): lanes of what was sensed, felt, commanded, halted and denied,
-// over program time.
+// Records a run for its page (page.hpp): lanes of what was sensed, felt, commanded, halted and denied, over program time.
 //
 // As JSON, which timeline.js reads; times are in microseconds, values in thousandths of their canonical unit:
 //   begin_us, end_us, behaviors: [name]
@@ -26,14 +25,14 @@
 
 namespace robosync::tool {
 
-// Takes the events of a run in their order. May assume nothing of their numbers.
+// Takes the events of a run in order. Their numbers are not trusted.
 class TimelineRecorder {
 public:
   // `program` and `names` must outlive it.
   TimelineRecorder(const Program& program, const TraceNames& names);
 
   void see(const link::Event& event);
-  // The whole run, which ended at `end_us`. Ends what still goes on.
+  // The whole run, which ended at `end_us`. Ends everything still open.
   [[nodiscard]] nlohmann::ordered_json finish(std::uint64_t end_us);
 
 private:
@@ -58,7 +57,7 @@ private:
   Json page_;
   Json steps_ = Json::array();
   std::vector<std::optional<std::size_t>> owners_;  // of each actuator: the rule that started last
-  std::vector<bool> moves_, halted_;                // … its last bar goes on
+  std::vector<bool> moves_, halted_;                // … its last bar is open
 };
 
 }  // namespace robosync::tool

@@ -1,4 +1,4 @@
-// What the rules of a program compare its inputs with: the lines that a picture of a sensor needs.
+// The values that a program's rules compare its inputs with, drawn as lines in a sensor's curve.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 namespace robosync::tool {
 
 struct Threshold {
-  std::size_t input;      // channel, or behind them variable, as the image numbers inputs
-  std::string_view text;  // "<", ">=" …; of a band: its name, which begins there
+  std::size_t input;      // channels, then variables, as the image numbers inputs
+  std::string_view text;  // "<", ">=" …; for a band, its name; the band begins there
   vm::Value value;
   std::size_t rule;  // kNoRule: a band of a CHECK
   static constexpr std::size_t kNoRule = SIZE_MAX;
 };
 
-// Comparisons of an input with a constant, in conditions and responses, each once a rule, and where bands begin.
-// `image` is verified.
+// Comparisons of an input with a constant, in conditions and responses, each once per rule, and the starts of
+// bands. `image` is verified.
 [[nodiscard]] std::vector<Threshold> thresholds_of(const vm::Image& image);
 
 }  // namespace robosync::tool

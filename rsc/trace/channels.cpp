@@ -46,7 +46,7 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
   no_such(fmt::format("channel of {}", image.string(sensor.name)), name, known);
 }
 
-// Is `name`, "touch.LEVEL", the channel that is meant, or may it be where none is named?
+// Is this the channel `name` ("touch.LEVEL"), or a candidate if no channel is named?
 bool is_channel(std::string_view name, std::string_view sensor, std::string_view channel) {
   const std::size_t dot = name.find('.');
   return compiler::ascii::same(name.substr(0, dot), sensor) &&

@@ -1,5 +1,5 @@
-// Channels by the name a person gives them: "touch.LEVEL", "touch LEVEL", or "touch" when it has
-// only one.
+// Finds channels by the name that a person writes: "touch.LEVEL", "touch LEVEL", or "touch" if it
+// has only one.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace robosync::tool {
 
-// Any case. Throws std::invalid_argument with what is wrong and the nearest name.
+// Ignores case. Throws std::invalid_argument with the reason and the nearest name.
 [[nodiscard]] std::uint8_t find_channel(const vm::Image& image, std::string_view name);
 [[nodiscard]] std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
                                         std::string_view channel);
 
-// Nothing: robot.json has the channel, and the program does not read it, so that its image does not
-// have it. `sensor` may be its whole name, "touch.LEVEL", where `channel` is empty.
+// Nothing: robot.json has the channel, but the program does not read it, so the image lacks it.
+// `sensor` may be the whole name, "touch.LEVEL", if `channel` is empty.
 [[nodiscard]] std::optional<std::uint8_t> find_read_channel(const Program& program,
                                                             std::string_view sensor,
                                                             std::string_view channel);
 
-// The unit of its numbers in robot.json; empty: it has none, or that is not known.
+// The unit of its numbers in robot.json; empty: none, or not known.
 [[nodiscard]] std::string_view unit_of(const Program& program, std::uint8_t channel);
 
-// What a channel measures, as a person writes it: "20cm", or the label of a channel with words. A
-// channel with two labels takes true and false as well, if it has no labels of these names. Throws
-// std::invalid_argument, which may offer `unit`, the channel's own.
+// Parses a reading as a person writes it: "20cm", or a label of a channel with words. A channel
+// with two labels also takes true and false, unless these are labels. Throws std::invalid_argument,
+// which may suggest `unit`, the channel's own.
 [[nodiscard]] vm::Value parse_reading(const vm::Image& image, std::uint8_t channel,
                                       std::string_view text, std::string_view unit = {});
 

@@ -1,13 +1,14 @@
-// Traces in the formats of other tools. Each reads the file as read_trace() does, and throws what that throws.
+// Converts traces to the formats of other tools. Each reads the file with read_trace(), and throws what that
+// throws.
 #pragma once
 
 #include <string>
 
 namespace robosync::tool {
 
-// The JSON that https://ui.perfetto.dev and chrome://tracing open.
+// JSON for https://ui.perfetto.dev and chrome://tracing.
 [[nodiscard]] std::string perfetto_of(const std::string& file);
-// A row for each line of the trace, a column for each thing that one of them says.
+// A row for each line of the trace, a column for each key.
 [[nodiscard]] std::string csv_of(const std::string& file);
 // Value change dump (IEEE 1364), with GTKWave's variables for words.
 [[nodiscard]] std::string vcd_of(const std::string& file);

@@ -1,4 +1,4 @@
-// See convert.hpp. The columns are those of the trace: no list of them to keep.
+// See convert.hpp. The columns are the keys found in the trace.
 #include <cstddef>
 #include <map>
 #include <string>
@@ -12,7 +12,8 @@
 namespace robosync::tool {
 namespace {
 
-// RFC 4180: quotes where a cell would otherwise end early, doubled inside.
+// RFC 4180: cells with separators or quotes are quoted, and quotes inside are
+// doubled.
 std::string cell_of(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string cell = "\"";
@@ -58,7 +59,7 @@ std::string csv_of(const std::string& file) {
   std::vector<Row> rows;
   read_trace(file, [&](const TraceLine& line) {
     const std::string kind = line.text("event");
-    if (kind == "image" || kind == "whole") return;  // for rsc replay alone
+    if (kind == "image" || kind == "whole") return;  // only for rsc replay
     Row row{{0, std::to_string(line.program)}};
     for (const auto& [key, value] : line.event.items())
       row.emplace_back(columns.of(key), cell_of(line.text(key.c_str())));

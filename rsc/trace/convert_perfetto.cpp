@@ -1,4 +1,5 @@
-// See convert.hpp. A "process" for each group of lanes, a "thread" for each lane: so Perfetto draws them below each other.
+// See convert.hpp. Each group of lanes is a "process" and each lane a "thread", so that Perfetto draws them below each
+// other.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -33,7 +34,7 @@ public:
       add({{"ph", "i"}, {"s", "t"}, {"ts", moment.at_us}}, lane.group, thread, moment.text);
   }
 
-  // A counter; where values are words, a lane of them. What is unknown has no place in a counter.
+  // A counter; if values are words, a lane. A counter cannot show unknown values.
   void add(const Curve& curve, std::uint64_t end_us) {
     const std::string name =
         curve.unit.empty() ? curve.name : fmt::format("{} ({})", curve.name, curve.unit);

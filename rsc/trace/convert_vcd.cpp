@@ -1,5 +1,5 @@
-// See convert.hpp. Lanes are variables that hold the text of what goes on, and nothing between; curves hold numbers, or words; what
-// was denied and said are events.
+// See convert.hpp. Lanes are variables with the text of the present span, empty in between; curves hold numbers or words; denials
+// and messages are events.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -18,7 +18,7 @@
 namespace robosync::tool {
 namespace {
 
-// A name without what has a meaning in names of VCD: spaces, brackets, dots.
+// A name without the characters that VCD names must not have: spaces, brackets, dots.
 std::string identifier(std::string_view name) {
   std::string safe(name);
   std::ranges::replace_if(
@@ -35,7 +35,7 @@ std::string code_of(std::size_t number) {
   return code;
 }
 
-// A word of GTKWave ends at a space.
+// GTKWave ends a word at a space.
 std::string word(std::string_view text) {
   std::string safe =
       escaped(text, {{' ', "\\x20"}, {'\t', "\\t"}, {'\n', "\\n"}, {'\r', "\\r"}, {'\\', "\\\\"}});
@@ -85,7 +85,7 @@ public:
   }
 
 private:
-  // Two names may have become the same.
+  // Two names may have become equal.
   std::string declare(LaneGroup group, const char* type, const std::string& name) {
     std::string unique = identifier(name);
     for (int i = 2; !names_.emplace(group, unique).second; ++i)
@@ -102,7 +102,7 @@ private:
   std::map<LaneGroup, std::string> declared_;
   std::set<std::pair<LaneGroup, std::string>> names_;
   std::size_t count_ = 0;
-  std::string begins_;                            // what everything is before the first change
+  std::string begins_;                            // the initial values
   std::map<std::uint64_t, std::string> changes_;  // by time
 };
 

@@ -1,4 +1,4 @@
-// Read with libcsv, one line of the file at a time, so that each row knows its line.
+// Uses libcsv, one line of the file at a time, so that each row knows its line.
 #include "rsc/trace/csv.hpp"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ private:
   }
 
   [[noreturn]] void bad_quote() const {
-    fail(row_.line, "a quote has no other, or stands inside a cell; write it twice there");
+    fail(row_.line, "a quote is not closed, or is inside a cell; double it there");
   }
 
   void check() const {
@@ -81,7 +81,7 @@ private:
 
   const std::string& file_;
   csv_parser parser_{};
-  CsvRow row_;  // the row at hand
+  CsvRow row_;  // the current row
   CsvTable table_;
 };
 

@@ -1,4 +1,4 @@
-// CSV files (RFC 4180), read whole: the first row names the columns.
+// Reads whole CSV files (RFC 4180): the first row names the columns.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 namespace robosync::tool {
 
 struct CsvRow {
-  std::size_t line = 0;            // where it ends in the file, from 1
+  std::size_t line = 0;            // the line of the file on which it ends, from 1
   std::vector<std::string> cells;  // as many as the table has columns
 };
 
@@ -17,9 +17,9 @@ struct CsvTable {
   std::vector<CsvRow> rows;
 };
 
-// Columns stand between commas, semicolons or tabs, whichever the first row has. Empty rows are
-// left out. Throws Failure: outside when the file cannot be read; program, with file and line, when
-// it has no columns, a quote without its end, or a row of another length.
+// Columns are separated by commas, semicolons or tabs, whichever the first row uses. Empty rows are
+// skipped. Throws Failure: outside if the file cannot be read; program, with file and line, if it
+// has no columns, an unclosed quote, or a row of another length.
 [[nodiscard]] CsvTable read_csv(const std::string& file);
 
 }  // namespace robosync::tool

@@ -1,4 +1,4 @@
-// May assume nothing of the events.
+// The events are not trusted.
 #include "rsc/trace/digest.hpp"
 
 #include <cstdlib>
@@ -8,7 +8,7 @@ namespace {
 
 using link::EventKind;
 
-constexpr std::int64_t kParts = 10;  // of the range of a feeling: a change of one is shown
+constexpr std::int64_t kParts = 10;  // parts of a feeling's range: a change by one is shown
 
 }  // namespace
 
@@ -27,16 +27,16 @@ bool Digest::shows(const link::Event& event) {
     case EventKind::set:
       return shows_value(event);
     default:
-      return true;  // what is new as well: better too much than not seen
+      return true;  // also new kinds of events: better too much than unseen
   }
 }
 
-// A feeling that fades changes in every step: it is shown when it has gone a tenth of its range, and
-// when it has come to rest.
+// A fading feeling changes in every step: it is shown after each tenth of its range, and when it has
+// settled.
 bool Digest::shows_value(const link::Event& event) {
   if (event.subject >= image_.variables.size() || event.value_count == 0) return true;
   const vm::Variable& variable = image_.variables[event.subject];
-  // What NEXT and ANY remember: no name in a program has a space.
+  // Hidden variables of NEXT and ANY: their names have a space, which no name in a program has.
   if (image_.string(variable.name).find(' ') != std::string_view::npos) return false;
   const vm::Value value = event.values[0];
   vm::Value& last = shown_[event.subject];

@@ -1,4 +1,4 @@
-// What of a run a person wants to see.
+// Selects the events of a run that a person wants to see.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace robosync::tool {
 
-// Takes the events of a run in their order. What is left out are readings, and how the robot came to
-// what it does: rules that trigger, wait and end, priorities that adapt, commands that are done.
+// Takes the events of a run in order. It leaves out readings and how the robot reached its
+// decisions: rules that trigger, wait and end, priorities that adapt, commands that are done.
 class Digest {
 public:
   // `image` must outlive it.
@@ -22,7 +22,7 @@ private:
   [[nodiscard]] bool shows_value(const link::Event& event);
 
   const vm::Image& image_;
-  std::vector<vm::Value> shown_;  // of each variable, the value that was shown last
+  std::vector<vm::Value> shown_;  // the value of each variable that was shown last
 };
 
 }  // namespace robosync::tool

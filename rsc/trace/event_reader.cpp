@@ -1,4 +1,4 @@
-// May assume nothing of the event. Promises a name, or a number with the word for what it counts.
+// The event is not trusted. Promises a name, or a number with the word for what it counts.
 #include "rsc/trace/event_reader.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ const EventShape& shape_of(link::EventKind kind) {
   return *std::ranges::find(kShapes, kind, &EventShape::kind);  // decode_event() knows the kind
 }
 
-// The values in the {} places of a text; where there are too few, places are left.
+// Fills values into the {} places of a text; with too few values, places remain.
 std::string filled_in(std::string_view text, std::span<const vm::Value> values) {
   std::string result;
   for (const vm::Value value : values) {
@@ -126,7 +126,7 @@ std::string EventReader::place_of(std::size_t rule) const {
   return fmt::format("line {}", names_.image->rules[rule].line);
 }
 
-// A rule outside a BEHAVIOR is a behaviour without a name; its line says which one it is.
+// A rule outside a BEHAVIOR is a behaviour without a name, identified by its line.
 std::string EventReader::behavior_name(std::uint16_t index) const {
   if (index == link::kStop) return "a person's stop";
   const vm::Behavior* const behavior = at(&vm::Image::behaviors, index);
@@ -184,7 +184,7 @@ std::string EventReader::actuator_name() const {
 std::string EventReader::verb_name() const {
   return name_at(&vm::Image::verbs, event_.object, "verb");
 }
-// What is said may be an empty text.
+// The text of a SAY may be empty.
 std::optional<std::string> EventReader::written_word() const {
   const vm::Value word = value(0);
   if (word < 0) return std::nullopt;
@@ -259,7 +259,8 @@ Meaning EventReader::meaning() const {
   return meaning;
 }
 
-// Of the channel or variable that is the subject, if the source is known and says one of `dimension`.
+// The unit of the subject (a channel or variable), if the source is known and gives one of
+// `dimension`.
 const compiler::Unit* EventReader::written_unit(vm::Dimension dimension) const {
   if (names_.origin == nullptr) return nullptr;
   const bool channel = shape_.subject == About::channel;
@@ -285,7 +286,7 @@ std::string EventReader::shown(vm::Value value) const {
   return compiler::format_value(value, *means.unit);
 }
 
-// How fast a MOTION is performed is a share of what is written, and no speed of its actuators.
+// The speed of a MOTION is a share of the written one, not a speed of its actuators.
 const compiler::Unit* EventReader::unit_of(vm::Param param) const {
   const vm::Verb* const verb = at(&vm::Image::verbs, event_.object);
   if (param == vm::Param::at && verb != nullptr && verb->action == vm::Action::perform)

@@ -1,5 +1,5 @@
-// A trace event with the names of what it is about. It may come from the line and belong to another
-// image: a number that the image does not have is shown as the number itself.
+// A trace event with the names of what it is about. It may come over the line and belong to another
+// image: a number that the image does not have is shown as a number.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ struct Meaning {
   vm::Dimension dimension = vm::Dimension::number;
   std::uint16_t first_label = 0;
   std::uint8_t label_count = 0;
-  const compiler::Unit* unit = nullptr;  // as its author writes it; null: the canonical one
+  const compiler::Unit* unit = nullptr;  // the author's; null: the canonical one
 };
 
 class EventReader {
@@ -53,53 +53,54 @@ public:
   const EventShape& shape() const { return shape_; }
 
   std::span<const std::int32_t> values() const;
-  vm::Value value(std::size_t index) const;  // kUnknown when it is not there
+  vm::Value value(std::size_t index) const;  // kUnknown if the event has none
 
   const vm::Rule* rule() const;  // the subject; nullptr when the image does not have it
   // The named behaviour of the event's rule; empty outside one.
   std::string_view behavior_of_rule() const;
   bool is_safety_rule() const;
-  // The behaviour that is the object is the one of the rule that is the subject.
+  // Is the behaviour (object) the one that the rule (subject) belongs to?
   bool interrupts_itself() const;
 
-  // The behaviour of the rule that is the subject has no other rule.
+  // Has the behaviour of the rule (subject) no other rule?
   bool is_only_rule() const;
 
   std::string rule_name() const;
-  std::int16_t base_priority() const;  // of the behaviour it is about, as it is written
+  std::int16_t base_priority() const;  // of the behaviour it is about, as written
   std::string behavior_name(std::uint16_t index) const;
-  std::string sensor_name() const;     // the subject, or that of the channel that is it
+  std::string sensor_name() const;     // of the subject, a sensor or a channel
   const vm::Sensor* sensor() const;    // the subject; nullptr when the image does not have it
   std::string channel_name() const;    // without its sensor
   const vm::Channel* channel() const;  // the subject; nullptr when the image does not have it
-  bool is_made() const;                // the channel is an algorithm's
+  bool is_made() const;                // the channel belongs to an algorithm
   std::string variable_name() const;
-  bool is_signal() const;  // the variable is one
+  bool is_signal() const;  // the variable is a SIGNAL
   bool is_timer() const;
   std::string actuator_name() const;
   std::string verb_name() const;
-  // Of a command; nothing without one. `word_name` has the values in the {} places of what is said.
+  // Of a command; nothing otherwise. `word_name` has the values filled into the {} places of its
+  // text.
   std::optional<std::string> word_name() const;
   std::optional<std::string> written_word() const;
-  // Is the parameter of a command a value for such a place?
+  // Is the parameter of a command a value for a {} place?
   bool is_said(std::size_t param) const;
   std::string thread_name() const;
   std::string thread_words() const;  // "behaviour shy"
-  // The text of LOG and ALERT, with the values in its {} places.
+  // The text of LOG and ALERT, with the values filled into its {} places.
   std::string text() const;
 
-  // Of the channel or variable that is the subject.
+  // Of the subject, a channel or a variable.
   Meaning meaning() const;
-  // The label that a value means; empty when it means none.
+  // The label of a value; empty if it has none.
   std::string_view label(const Meaning& meaning, vm::Value value) const;
   // The value of the subject: "scared", "20.5mm", "unknown".
   std::string shown(vm::Value value) const;
   // The value of a parameter of a command: "90deg".
   std::string shown(std::size_t param, vm::Value value) const;
-  // The unit in which robot.json gives it; null when that is not known.
+  // The unit in which robot.json gives it; null if not known.
   const compiler::Unit* unit_of(vm::Param param) const;
 
-  // Is it a command, and one that its actuator does: none that says an unknown value.
+  // Is it a command that its actuator carries out, that is, not one that says an unknown value?
   bool is_carried_out() const;
   // Calls use(parameter, value) for each parameter of a command.
   template <typename Use>
@@ -124,7 +125,7 @@ private:
                       std::string_view what) const;
   const vm::Behavior* behavior_with_rule() const;
   const compiler::Unit* written_unit(vm::Dimension dimension) const;
-  // Where the rule stands: "line 12", or "mood.rsl:12" of another file.
+  // The place of the rule: "line 12", or "mood.rsl:12" in another file.
   std::string place_of(std::size_t rule) const;
 
   const link::Event& event_;
@@ -132,10 +133,11 @@ private:
   const EventShape& shape_;
 };
 
-// Of a command, as lines have it: "Hello", or "" in its quotes.
+// The text of a command as lines show it: "Hello", or "" in quotes.
 [[nodiscard]] std::string shown_word(std::string_view word);
 
-// OVER and FOR are times; the other parameters have the unit of their actuator, which no image has.
+// OVER and FOR are times; the other parameters have the unit of their actuator, which is not in the
+// image.
 [[nodiscard]] vm::Dimension dimension_of_param(std::size_t param);
 
 }  // namespace robosync::tool

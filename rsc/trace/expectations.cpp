@@ -1,4 +1,4 @@
-// May assume a recording that goes on to the end of the test. Windows include both their ends.
+// May assume that the recording reaches the end of the test. Windows include both their ends.
 #include "rsc/trace/expectations.hpp"
 
 #include <algorithm>
@@ -100,7 +100,7 @@ public:
     Playback playback(recording_);
     playback.advance(from_us_);
     vm::Value truth = compiler::test_plan::evaluate(expected.condition, playback);
-    // With a TIMER in it, every millisecond may change it.
+    // A TIMER may change it every millisecond.
     const bool always = compiler::reads_time(expected.condition);
     for (std::uint64_t at = from_us_; truth != vm::kTrue;) {
       at = always ? at + kMicroseconds : playback.next_time();
@@ -118,7 +118,7 @@ private:
     return fmt::format("from {} to {}", seconds_text(from_us_), seconds_text(until_us_));
   }
 
-  // The first event in the window that `matches`, with the values of its moment.
+  // The first event in the window for which `matches` is true, given the values at that time.
   template <typename Matches>
   const link::Event* find(Matches matches) const {
     return find(matches, from_us_, until_us_);
@@ -134,7 +134,7 @@ private:
     return nullptr;
   }
 
-  // A window that is only a little off is the most common mistake in a test.
+  // A window that is slightly off is the most common mistake in a test.
   template <typename Matches>
   std::string elsewhere(Matches matches) const {
     const link::Event* const found = find(matches, 0, UINT64_MAX);
@@ -155,7 +155,7 @@ private:
                        count == 1 ? "" : "s", window(), *expected.times);
   }
 
-  // The command that comes nearest to what was expected: of this verb, in the window if there is one.
+  // The command closest to what was expected: with this verb, and in the window if there is one.
   std::string nearest(const std::string& actuator, const ExpectedCommand& expected) const {
     const auto similar = [&](const link::Event& event, const Playback&) {
       if (event.kind != EventKind::command) return false;
@@ -224,7 +224,7 @@ private:
            (event.kind == EventKind::command && compiler::ascii::same(reader.verb_name(), "STOP"));
   }
 
-  // At the beginning of the window.
+  // At the start of the window.
   bool is_halted(const std::string& actuator) const {
     bool halted = false;
     for (const link::Event& event : recording_.events) {

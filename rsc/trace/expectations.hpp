@@ -8,7 +8,7 @@
 
 namespace robosync::tool {
 
-// Nothing when it came as expected; else what was different, in one sentence.
+// Nothing if it came as expected; else what was different, in one sentence.
 [[nodiscard]] std::optional<std::string> disappointment(
     const compiler::test_plan::Expectation& expectation, const Recording& recording);
 

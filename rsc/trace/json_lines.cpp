@@ -1,5 +1,5 @@
-// One pass over the text, which knows strings and nesting and nothing else. May assume that the
-// text has been parsed without error.
+// One pass over the text that only tracks strings and nesting. May assume that the text has been
+// parsed without error.
 #include "rsc/trace/json_lines.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See lanes.hpp. Reads what trace_json.cpp writes, by its names; what an event does not say is left empty.
+// See lanes.hpp. Reads what trace_json.cpp writes, by key; missing keys are empty.
 #include "rsc/trace/lanes.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::string name_of_rule(const TraceLine& line) {
 std::string command_text(const TraceLine& line) {
   std::string text = line.text("verb");
   if (const std::string word = line.text("word"); !word.empty()) text += " " + word;
-  bool is_param = false;  // they stand behind the verb
+  bool is_param = false;  // they follow the verb
   for (const auto& [key, value] : line.event.items()) {
     if (is_param && key != "word") {
       std::string name = key;
@@ -37,7 +37,7 @@ std::string command_text(const TraceLine& line) {
   return text;
 }
 
-// What a message says besides its kind.
+// The text of a message besides its kind.
 std::string message_text(const TraceLine& line) {
   std::string text;
   for (const char* key : {"text", "thread", "actuator", "sensor", "late_us", "failed"})

@@ -1,4 +1,4 @@
-// A trace as a picture of it needs it: what went on from when to when, in lanes; values over time; moments.
+// A trace as drawable lanes: spans from when to when, values over time, and moments.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct Moment {
 
 struct Sample {
   std::uint64_t at_us = 0;
-  std::optional<double> number;  // neither: unknown
+  std::optional<double> number;  // neither number nor word: unknown
   std::string word;
 };
 
@@ -48,11 +48,11 @@ struct Curve {
   std::vector<Sample> samples;
 };
 
-// Takes the lines of a trace in their order.
+// Takes the lines of a trace in order.
 class Lanes {
 public:
   void see(const TraceLine& line);
-  // Ends what still goes on.
+  // Ends everything still open.
   void finish();
 
   const std::vector<Lane>& lanes() const { return lanes_; }

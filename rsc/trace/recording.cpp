@@ -1,4 +1,4 @@
-// May assume a plan that was made for this program.
+// May assume that the plan was made for this program.
 #include "rsc/trace/recording.hpp"
 
 #include <algorithm>
@@ -19,10 +19,10 @@ namespace {
 using compiler::test_plan::ChannelName;
 using compiler::test_plan::PlannedReading;
 
-// Whatever the configuration says: a TEST must not depend on it.
+// Not the configuration's: a TEST must not depend on it.
 constexpr std::uint32_t kTestSeed = 1;
 
-// Nothing for a channel that the program does not read: it has no place in the image.
+// Nothing for a channel that the program does not read: the image does not have it.
 std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName& name) {
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
     const vm::Channel& channel = image.channels[i];
@@ -99,7 +99,7 @@ std::uint64_t Playback::next_time() const {
 vm::Value Playback::channel(compiler::ChannelRef channel) const {
   const auto place = channel_of(*recording_.image, recording_.plan->channels.at(channel));
   if (place) return channels_[*place];
-  // The program does not look at it, so the robot did not either: it is what it was fed.
+  // The program does not read it, so the robot has no value: it is what the test fed.
   vm::Value value = vm::kUnknown;
   for (const PlannedReading& reading : recording_.test->readings) {
     if (reading.channel == channel && reading.at * kMicroseconds <= now_us_) value = reading.value;
@@ -111,7 +111,7 @@ vm::Value Playback::variable(std::size_t index) const {
   return index < variables_.size() ? variables_[index] : vm::kUnknown;
 }
 
-// A duration counts milliseconds, too.
+// Durations also count milliseconds.
 vm::Value Playback::time() const {
   return static_cast<vm::Value>(now_us_ / kMicroseconds);
 }

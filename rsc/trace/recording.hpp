@@ -1,5 +1,5 @@
-// One run of a TEST: a new robot in virtual time, fed with the readings of the test, and everything
-// that it did.
+// One run of a TEST: everything that a new robot did in virtual time when fed with the test's
+// readings.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +19,24 @@ struct Recording {
   const compiler::test_plan::TestPlan* plan = nullptr;
   const compiler::test_plan::PlannedTest* test = nullptr;
   std::vector<link::Event> events;        // in the order they happened
-  std::vector<link::ThreadInfo> threads;  // when the first event named one; else empty
+  std::vector<link::ThreadInfo> threads;  // when the first event named a thread; else empty
 };
 
-// `program` and `plan` must outlive the result. Throws Failure (program) when the robot refuses the
+// `program` and `plan` must outlive the result. Throws Failure (program) if the robot refuses the
 // program.
 [[nodiscard]] Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
                                const compiler::test_plan::PlannedTest& test);
 
-// Goes through a recording and knows the values of each moment.
+// Steps through a recording and knows the values at each moment.
 class Playback final : public compiler::test_plan::Moment {
 public:
   explicit Playback(const Recording& recording);
 
-  // The next event, which has its effect at once; nullptr at the end.
+  // The next event, which takes effect immediately; nullptr at the end.
   const link::Event* next();
   // All events up to program time `until_us`, inclusive.
   void advance(std::uint64_t until_us);
-  // When the next step with an event, or reading, comes; UINT64_MAX: never.
+  // The time of the next step with an event or a reading; UINT64_MAX: never.
   std::uint64_t next_time() const;
 
   vm::Value channel(compiler::ChannelRef channel) const override;
@@ -48,7 +48,7 @@ private:
   std::size_t at_ = 0;
   std::uint64_t now_us_ = 0;
   std::vector<vm::Value> channels_;   // by number in the image
-  std::vector<vm::Value> variables_;  // likewise
+  std::vector<vm::Value> variables_;  // also by number
 };
 
 }  // namespace robosync::tool

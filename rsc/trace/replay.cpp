@@ -30,10 +30,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kLongestUs = std::uint64_t{24} * 3600 * 1'000'000;
-// What was recorded later than it is replayed, by more than that, is another thing. A frame of a servo: no movement is shorter.
+// An event recorded later than replayed by more than this is a different event. One servo frame: no movement is shorter.
 constexpr std::uint64_t kMostLateUs = 20'000;
 
-// What is told to the program, and what a board tells of itself.
+// Excludes what is fed to the program and what only depends on the board.
 bool is_compared(std::string_view kind) {
   constexpr std::string_view kOthers[] = {"activated", "input",   "stale",  "fault",
                                           "deadline",  "lowered", "silent", "answers"};
@@ -48,7 +48,7 @@ std::uint64_t time_of(const Json& event) {
   return event["t_us"].get<std::uint64_t>();
 }
 
-// The record at `index` of a section, in the bytes that the image is a view of.
+// The record at `index` of a section, in the bytes behind the image.
 template <typename Record>
 void change(std::vector<std::byte>& bytes, std::span<const Record> section, std::size_t index,
             void (*how)(Record&)) {
@@ -60,7 +60,7 @@ void change(std::vector<std::byte>& bytes, std::span<const Record> section, std:
   std::memcpy(to, &record, sizeof record);
 }
 
-// The program with sensors that are fed, whatever they were: it needs neither drivers nor algorithms. A damaged image stays as it is.
+// The program with all sensors fed, so that it needs neither drivers nor algorithms. A damaged image is returned unchanged.
 std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes) {
   vm::Image image;
   if (!vm::view_image(bytes, image) || !vm::is_named(bytes, {})) return bytes;
@@ -75,7 +75,7 @@ std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes) {
   return bytes;
 }
 
-// Its channels tell each reading unchanged, and only those that fell silent in the recording can do so.
+// Channels pass every reading unchanged, and only those that became silent in the recording can become stale.
 std::vector<std::byte> with_plain_channels(const Program& program,
                                            const std::set<std::uint8_t>& silent) {
   std::vector<std::byte> bytes(program.bytes().begin(), program.bytes().end());
@@ -91,10 +91,10 @@ std::vector<std::byte> with_plain_channels(const Program& program,
   return bytes;
 }
 
-// A reading as the trace has it: a label, or a number in the canonical unit.
+// A reading as in the trace: a label, or a number in the canonical unit.
 vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& value) {
   if (value.is_string()) return parse_reading(image, channel, value.get<std::string>());
-  if (!value.is_number()) throw std::invalid_argument("its value is no number");
+  if (!value.is_number()) throw std::invalid_argument("its value is not a number");
   const double thousandths = std::round(value.get<double>() * vm::kScale);
   if (std::abs(thousandths) > vm::kValueMax) throw std::invalid_argument("its value is too large");
   return static_cast<vm::Value>(thousandths);
@@ -104,7 +104,7 @@ struct Told {
   std::uint64_t at_us = 0;
   std::uint64_t step = 0;
   std::uint8_t channel = 0;
-  std::optional<vm::Value> value;  // nothing: it fell silent
+  std::optional<vm::Value> value;  // nothing: the channel became silent
 };
 using Readings = std::vector<Told>;  // in their order
 
@@ -113,7 +113,7 @@ std::uint64_t step_of(const Json& event) {
   return step != event.end() && step->is_number_unsigned() ? step->get<std::uint64_t>() : 0;
 }
 
-// By its names, whatever measures it.
+// By name, whatever measures it.
 std::uint8_t channel_of(const vm::Image& image, const Json& event) {
   const std::string sensor = event.value("sensor", ""), channel = event.value("channel", "");
   for (std::size_t i = 0; i < image.channels.size(); ++i)
@@ -135,7 +135,7 @@ Readings readings_of(const RecordedProgram& recorded, const vm::Image& image,
         told.value = value_of(image, told.channel, event.value("value", Json(nullptr)));
       readings.push_back(told);
     } catch (const std::exception& error) {
-      throw Failure(Exit::program, fmt::format("{}:{}: this reading is not of the program: {}",
+      throw Failure(Exit::program, fmt::format("{}:{}: this reading does not fit the program: {}",
                                                file, line, error.what()));
     }
   }
@@ -149,7 +149,7 @@ std::set<std::uint8_t> silent_ones(const Readings& readings) {
   return silent;
 }
 
-// Tells a simulated robot what was recorded.
+// Feeds the recording to a simulated robot.
 class Feeder {
 public:
   Feeder(sim::Simulator& simulator, const RecordedProgram& recorded, const vm::Image& image)
@@ -162,7 +162,7 @@ public:
   void run(const Readings& readings, const std::set<std::uint8_t>& silent) {
     for (std::size_t i = 0; i < readings.size(); ++i) {
       const Told& told = readings[i];
-      // An earlier step of this millisecond did not know of this reading, nor of others of its step.
+      // An earlier step in this millisecond did not have this reading, nor others of the same step.
       const bool is_first_of_step = i == 0 || readings[i - 1].step != told.step;
       if (is_first_of_step && first_step_.at(told.at_us) < told.step)
         simulator_.run_until(told.at_us);
@@ -174,7 +174,7 @@ public:
   }
 
 private:
-  // What the board says at the time at which a step is made; other events come when they come.
+  // Events that the board stamps with the time of a step; other events have their own times.
   static bool is_of_step(std::string_view kind) {
     constexpr std::string_view kOfStep[] = {"input", "stale", "set", "fire", "win", "lose"};
     return std::ranges::find(kOfStep, kind) != std::end(kOfStep);
@@ -186,7 +186,7 @@ private:
     return nullptr;
   }
 
-  // A channel that can fall silent is told its value again while it does not; it does so its `life` after the last time
+  // A channel that can become silent gets its value again until then; it becomes silent `life` after the last one
   // (layers/mailbox.hpp).
   void repeat(const Told& told, const Told* next) {
     const std::uint64_t life_us = (image_.channels[told.channel].stale_ms + 1U) * kMicroseconds;
@@ -206,10 +206,10 @@ private:
   std::map<std::uint64_t, std::uint64_t> first_step_;  // by time
 };
 
-// What two programs that decide the same may tell otherwise: where their rules are written.
+// Whether the lines of rules are compared: two programs that decide the same may differ in them.
 enum class Lines : std::uint8_t { compared, of_another };
 
-// A rule outside a BEHAVIOR is called by its line.
+// A rule outside a BEHAVIOR is named by its line.
 void leave_lines_out(Json& event) {
   constexpr std::string_view kByItsLine = "the rule at ";
   event.erase("line");
@@ -219,8 +219,7 @@ void leave_lines_out(Json& event) {
       *name = kByItsLine;
 }
 
-// The numbers of steps are not compared: one in which nothing was new is one that a recording does not tell. When it was,
-// Comparison looks at.
+// Step numbers are not compared, because a recording leaves out steps without news. Comparison checks the times.
 bool same(Json a, Json b, Lines lines) {
   for (Json* const event : {&a, &b}) {
     event->erase("step");
@@ -230,17 +229,17 @@ bool same(Json a, Json b, Lines lines) {
   return a == b;
 }
 
-// What it is about: an actuator, a variable or a rule, or else the messages.
+// The subject of an event: an actuator, a variable or a rule; messages share one subject.
 Json subject_of(const Json& event) {
   for (const char* const key : {"actuator", "variable", "rule"})
     if (const auto found = event.find(key); found != event.end()) return {{key, *found}};
   return nullptr;
 }
 
-// What happens within a millisecond has no order but that of its causes: of a command that is done and a step that knows of
-// a reading, either may come first. So each millisecond is compared as a whole. On a board a thread may have to wait for the
-// processor, here none does: so what was recorded may come a little later than it does here, and behind what a reading has
-// led to meanwhile; but nothing overtakes what came before it of the same thing.
+// Within a millisecond, events are ordered only by their causes: a finished command and a step with a reading may come in either
+// order. So each millisecond is compared as a whole. On a board a thread may have to wait for the processor, here none does: a
+// recorded event may come a little later than here, and after what a reading caused meanwhile, but never before an earlier event
+// of the same subject.
 struct Millisecond {
   std::vector<RecordedEvent> recorded;
   std::vector<Json> replayed;
@@ -250,7 +249,7 @@ class Comparison {
 public:
   Comparison(Lines lines, Replayed& result) : lines_(lines), result_(result) {}
 
-  // In the order of time. False: there is a difference.
+  // Call in order of time. False: there is a difference.
   [[nodiscard]] bool see(std::uint64_t at_us, const Millisecond& both) {
     if (!await(at_us)) return false;
     open_.insert(open_.end(), both.replayed.begin(), both.replayed.end());
@@ -258,8 +257,7 @@ public:
                                [this](const RecordedEvent& one) { return find(one); });
   }
 
-  // At this time nothing is missing that should have been recorded before; what the last milliseconds
-  // have replayed may be recorded still.
+  // True if no replayed event is overdue at this time; events of the last milliseconds may still be recorded.
   [[nodiscard]] bool await(std::uint64_t at_us) {
     if (open_.empty() || time_of(open_.front()) + kMostLateUs >= at_us) return true;
     result_.difference = Difference{0, "", open_.front().dump()};
@@ -290,7 +288,7 @@ private:
 
   Lines lines_;
   Replayed& result_;
-  std::vector<Json> open_;  // replayed, and not recorded so far
+  std::vector<Json> open_;  // replayed, but not yet found in the recording
 };
 
 Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<Json>& replayed,
@@ -314,7 +312,7 @@ std::uint32_t seed_of(const RecordedProgram& recorded) {
   return seed.is_number_integer() ? static_cast<std::uint32_t>(seed.get<std::int64_t>()) : 0;
 }
 
-// A recorded image of another version of RoboSync tells nothing of its channels.
+// Empty if the recorded image is of another version of RoboSync, whose channels are not known.
 std::vector<std::string> unrecorded(const RecordedProgram& recorded, const vm::Image& image) {
   vm::Image before;
   std::vector<std::string> names;
@@ -335,7 +333,7 @@ std::vector<std::string> unrecorded(const RecordedProgram& recorded, const vm::I
 
 Replayed replay(const RecordedProgram& recorded, const std::string& file,
                 std::span<const std::byte> in_its_place) {
-  const std::string name = fmt::format("{}:{}: the program that begins here", file, recorded.line);
+  const std::string name = fmt::format("{}:{}: the program that starts here", file, recorded.line);
   if (time_of(recorded.events.back().event) > kLongestUs)
     throw Failure(Exit::program, name + " ran for longer than a day, which is too long to replay");
   const bool is_other = !in_its_place.empty();

@@ -1,4 +1,4 @@
-// See replay_file.hpp. May assume nothing of the file.
+// See replay_file.hpp. The file is not trusted.
 #include "rsc/trace/replay_file.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::vector<std::byte> bytes_of(const std::string& hex, const std::string& file,
     std::uint8_t byte = 0;
     const char* const at = hex.data() + i;
     if (i + 2 > hex.size() || std::from_chars(at, at + 2, byte, kHex).ptr != at + 2)
-      throw Failure(Exit::program, fmt::format("{}:{}: this is no image", file, line));
+      throw Failure(Exit::program, fmt::format("{}:{}: this is not an image", file, line));
     bytes.push_back(std::byte{byte});
   }
   return bytes;
@@ -56,7 +56,7 @@ public:
   [[nodiscard]] RecordedRun run() && { return std::move(run_); }
 
 private:
-  // The program before may have been told to give up what it did: that was not its own will.
+  // Cancels at the end of the previous program come from the upload, not from the program.
   void begin(std::size_t line) {
     if (is_open_) {
       auto& events = run_.programs.back().events;
@@ -67,7 +67,7 @@ private:
     is_open_ = true;
   }
 
-  // What was seen since it was whole may be without what led to it.
+  // Events since the last `whole` may lack their causes.
   void close(const std::string& why) {
     for (; run_.programs.size() > whole_programs_; run_.programs.pop_back())
       run_.loose += run_.programs.back().events.size();
@@ -84,8 +84,9 @@ private:
   const std::string& file_;
   std::vector<std::byte> image_;
   RecordedRun run_;
-  bool is_open_ = false;                               // the last program has no gap yet
-  std::size_t whole_programs_ = 0, whole_events_ = 0;  // when it was whole; of the last of them
+  bool is_open_ = false;  // the last program has no gap yet
+  // At the last `whole`: the number of programs, and of events of the last one.
+  std::size_t whole_programs_ = 0, whole_events_ = 0;
 };
 
 }  // namespace

@@ -1,9 +1,7 @@
-// Recordings that `rsc replay` runs again: the lines of a trace
-// (trace_format.hpp), and among them
-//   {"event":"image","bytes":400,"hex":"…"}   the program that begins, or goes
-//   on, from here; before its `activated`
-//   {"event":"gap","why":"…"}                 something has happened that the
-//   recording does not tell
+// Recordings for `rsc replay`: the lines of a trace (trace_format.hpp), and among them
+//   {"event":"image","bytes":400,"hex":"…"}   the program that starts or keeps running here; before its `activated`
+//   {"event":"gap","why":"…"}                 events are missing here
+//   {"event":"whole"}                         no events are missing up to here
 #pragma once
 
 #include <cstddef>
@@ -15,7 +13,7 @@
 
 namespace robosync::tool {
 
-// Each with its newline.
+// Each ends with a newline.
 [[nodiscard]] std::string image_line(std::span<const std::byte> image);
 [[nodiscard]] std::string whole_line();
 [[nodiscard]] std::string gap_line(const std::string& why);
@@ -26,22 +24,20 @@ struct RecordedEvent {
   nlohmann::ordered_json event;
 };
 
-// What was recorded of one program from its beginning on, without a gap.
+// The recording of one program from its start, up to the first gap.
 struct RecordedProgram {
-  std::size_t line = 0;          // where it begins
+  std::size_t line = 0;          // where it starts
   std::vector<std::byte> image;  // empty: the file does not have it
   std::vector<RecordedEvent> events;
-  std::string gap;  // why it ends; empty: it was there to the end
+  std::string gap;  // why it ends early; empty: it is complete
 };
 
 struct RecordedRun {
   std::vector<RecordedProgram> programs;
-  std::size_t loose = 0;  // events before a beginning, or behind a gap: nobody
-                          // knows what led to them
+  std::size_t loose = 0;  // events before a program's start or after a gap: causes unknown
 };
 
-// Throws as read_trace(); Failure (program), with file and line, for an image
-// that is none.
+// Throws what read_trace() throws; Failure (program), with file and line, for an invalid image.
 [[nodiscard]] RecordedRun read_recording(const std::string& file);
 
 }  // namespace robosync::tool

@@ -1,5 +1,5 @@
-// Read with Jansson. May assume nothing of the text. Promises that a wrong scenario gets one
-// message with file and line, and that a right one has its stimuli in order of time.
+// Uses Jansson. The text is not trusted. Promises that a wrong scenario gets one message with file
+// and line, and that a valid one has its stimuli in order of time.
 #include "rsc/trace/scenario.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@
 namespace robosync::tool {
 namespace {
 
-constexpr std::uint64_t kRampPeriodUs = 50'000;  // for a sensor that says no period of its own
+constexpr std::uint64_t kRampPeriodUs = 50'000;  // for a sensor without its own period
 constexpr std::size_t kMaxStimuli = 1'000'000;
 
 struct FreeJson {
@@ -51,14 +51,14 @@ private:
     throw Failure(Exit::program, fmt::format("{}:{}: {}", file_, line, message));
   }
 
-  // Line of a key in the element at hand, or else of the element.
+  // The line of a key in the current element, or else of the element.
   std::size_t line_of_key(std::string_view key) const {
     const std::string_view element(text_.data() + element_.begin, element_.end - element_.begin);
     const std::size_t at = element.find(fmt::format("\"{}\"", key));
     return line_of(text_, element_.begin + (at == std::string_view::npos ? 0 : at));
   }
 
-  // What goes wrong inside `body` is wrong with the value of this key.
+  // Reports an error inside `body` as an error in the value of this key.
   template <typename Body>
   auto at_key(std::string_view key, Body body) const {
     try {
@@ -68,7 +68,8 @@ private:
     }
   }
 
-  // What `read` cannot open, this key names. What is wrong inside of the file, it says itself.
+  // If `read` cannot open the file, the error is reported at this key. Errors inside the file have
+  // their own place.
   template <typename Read>
   auto named_by(std::string_view key, Read read) const {
     try {
@@ -98,7 +99,8 @@ private:
     return microseconds(json_string_value(value));
   }
 
-  // A number is good for channels without a unit; others say theirs, or one of their words.
+  // A bare number is only for channels without a unit; others take a number with a unit, or one of
+  // their words.
   vm::Value reading(json_t* value, std::uint8_t channel) const {
     const auto parse = [&](std::string_view text) {
       return parse_reading(image_, channel, text, unit_of(program_, channel));
@@ -126,7 +128,7 @@ private:
     return json_string_value(value);
   }
 
-  // Nothing, and a note: the program does not read it.
+  // Nothing, with a note, if the program does not read it.
   std::optional<std::uint8_t> channel_of(json_t* stimulus) {
     const std::string_view sensor = need_string(stimulus, "sensor");
     const bool named = json_object_get(stimulus, "channel") != nullptr;
@@ -141,9 +143,10 @@ private:
   // Once for each channel.
   void note(std::string_view file, std::size_t line, const std::string& channel) {
     if (!unread_.insert(channel).second) return;
-    scenario_.notes.push_back(fmt::format(
-        "{}:{}: note: the program does not read {}, so what the scenario says of it does nothing",
-        file, line, channel));
+    scenario_.notes.push_back(
+        fmt::format("{}:{}: note: the program does not read {}, so what the scenario says about it "
+                    "has no effect",
+                    file, line, channel));
   }
 
   void read_stimuli(json_t* stimuli) {
@@ -202,10 +205,9 @@ private:
     };
     const vm::Value first = end(0), last = end(1);
     if (first != last && image_.channels[*channel].label_count > 0)
-      fail(line_of_key("ramp"),
-           fmt::format("{} has words, and there is nothing between two words: write a stimulus "
-                       "with `at` and `value` for each",
-                       image_.string(image_.channels[*channel].name)));
+      fail(line_of_key("ramp"), fmt::format("{} has words, and nothing lies between two words: "
+                                            "write a stimulus with `at` and `value` for each",
+                                            image_.string(image_.channels[*channel].name)));
     add_ramp(from, to, *channel, first, last);
   }
 
@@ -220,7 +222,7 @@ private:
     return (std::filesystem::path(file_).parent_path() / name).string();
   }
 
-  // The channels of a microphone that the program reads, or what it uses.
+  // The channels of a microphone that the program, or an algorithm that it uses, reads.
   void read_sound(json_t* stimulus) {
     const std::string_view sensor = need_string(stimulus, "sensor");
     const std::string file = beside(need_string(stimulus, "sound"));
@@ -246,7 +248,7 @@ private:
   // ---- recordings in CSV
 
   struct Column {
-    std::optional<std::uint8_t> channel;  // none: the times, or what the program does not read
+    std::optional<std::uint8_t> channel;  // none: the times, or not read by the program
     std::string unit;                     // of bare numbers
   };
 
@@ -269,7 +271,7 @@ private:
     throw Failure(Exit::program, fmt::format("{}:{}: {}", file, line, message));
   }
 
-  // `DISTANCE (cm)`: a name, and in brackets the unit of its numbers.
+  // `DISTANCE (cm)`: a name with the unit of its numbers in brackets.
   static std::pair<std::string, std::string> name_and_unit(const std::string& cell) {
     const std::size_t open = cell.find('(');
     if (open == std::string::npos || cell.back() != ')') return {cell, ""};
@@ -293,8 +295,8 @@ private:
           is_time ? Column{{}, unit} : read_column(file, table.columns.line, sensor, name, unit);
       if (is_time ? time_column < table.columns.cells.size() : is_among(columns, column))
         scenario_.notes.push_back(
-            fmt::format("{}:{}: note: two columns are called `{}`: of each row the last one counts",
-                        file, table.columns.line, name));
+            fmt::format("{}:{}: note: two columns are called `{}`; the last one counts", file,
+                        table.columns.line, name));
       if (is_time) time_column = columns.size();
       columns.push_back(column);
     }
@@ -323,13 +325,13 @@ private:
     std::size_t time_column;
   };
 
-  // A number without a unit has the one of its column.
+  // A number without a unit has its column's unit.
   static std::string with_unit(const std::string& cell, const std::string& unit) {
     const bool bare = cell.find_first_not_of("0123456789.-+eE") == std::string::npos;
     return bare ? cell + unit : cell;
   }
 
-  // A cell with nothing in it is no reading.
+  // An empty cell is not a reading.
   void add_row(const Row& row, std::uint64_t begin) {
     const std::vector<std::string>& cells = row.cells.cells;
     in_recording_ = &row;
@@ -352,7 +354,7 @@ private:
 
   // ---- readings one by one
 
-  // A reading in each period of the sensor, and the last one.
+  // A reading in each period of the sensor, and one at the end.
   void add_ramp(std::uint64_t from, std::uint64_t to, std::uint8_t channel, std::int64_t first,
                 std::int64_t last) {
     const std::uint16_t period_ms = image_.sensors[image_.channels[channel].sensor].period_ms;
@@ -395,8 +397,8 @@ private:
   std::string text_;
   const Program& program_;
   const vm::Image& image_;
-  TextRange element_;                    // the stimulus at hand
-  const Row* in_recording_ = nullptr;    // the row at hand, while one is read
+  TextRange element_;                    // the current stimulus
+  const Row* in_recording_ = nullptr;    // the current row, while reading one
   std::set<std::uint8_t> out_of_range_;  // channels with a note
   std::set<std::string> unread_;         // channels with a note
   Scenario scenario_;
@@ -408,7 +410,7 @@ Scenario ScenarioReader::read() {
       json_loadb(text_.data(), text_.size(), JSON_REJECT_DUPLICATES, &error));
   if (!root)
     fail(static_cast<std::size_t>(std::max(error.line, 1)),
-         fmt::format("this is no JSON, at column {}: {}", error.column, error.text));
+         fmt::format("this is not JSON, at column {}: {}", error.column, error.text));
   element_ = {0, text_.size()};
   if (!json_is_object(root.get())) fail(1, "a scenario is an object: {\"stimuli\": […]}");
   check_keys(root.get(), {"$schema", "duration", "stimuli"});

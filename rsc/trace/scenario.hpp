@@ -1,4 +1,4 @@
-// Scenarios: what the sensors measure, when (docs/scenario.md; grammar/scenario.schema.json).
+// Scenarios: what the sensors measure, and when (docs/scenario.md; grammar/scenario.schema.json).
 #pragma once
 
 #include <cstdint>
@@ -20,14 +20,14 @@ struct Scenario {
   std::optional<std::uint64_t> duration_us;
   std::vector<Stimulus> stimuli;  // by time; ramps are resolved into single readings
   std::vector<std::string>
-      notes;  // with file and line: readings that nobody reads, or out of range
+      notes;  // with file and line: readings that the program does not read, or out of range
 };
 
-// CSV files that it names are found beside it. Throws Failure: outside when a file cannot be read;
-// program when one is wrong, with file and line.
+// CSV files are looked up next to it. Throws Failure: outside if a file cannot be read; program,
+// with file and line, if one is wrong.
 [[nodiscard]] Scenario read_scenario(const std::string& file, const Program& program);
 
-// Its notes, for a person, on stderr.
+// Prints its notes on stderr.
 void show_notes(const Scenario& scenario);
 
 }  // namespace robosync::tool

@@ -1,4 +1,4 @@
-// Read with libsndfile. May assume nothing of the file.
+// Uses libsndfile. The file is not trusted.
 #include "rsc/trace/sound.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLongestHours = 1;
 
-// What is used of libsndfile, which brings half a dozen codecs with it.
+// The functions used of libsndfile, which depends on half a dozen codecs.
 struct SoundFiles {
 #define SOUND_FUNCTIONS(F) F(open) F(close) F(readf_double) F(strerror)
 #define FUNCTION(name) decltype(&sf_##name) name##_ = nullptr;
@@ -33,7 +33,7 @@ struct SoundFiles {
   }
 };
 
-// The mean of what falls into each sample of the ear: high tones that it could not tell from low ones are so softened.
+// The mean of the samples that fall into each sample of the ear; this weakens high tones that would alias.
 class Resampler {
 public:
   explicit Resampler(int rate) : rate_(rate) {}
@@ -84,13 +84,13 @@ std::vector<drivers::Heard> hear_file(const std::string& file) {
       library.open_(file.c_str(), SFM_READ, &format), library.close_);
   if (!sound)
     throw Failure(Exit::program,
-                  fmt::format("{}: it is no sound: {}", file, library.strerror_(nullptr)));
+                  fmt::format("{}: it is not a sound file: {}", file, library.strerror_(nullptr)));
   if (format.samplerate < static_cast<int>(drivers::kEarRate))
     throw Failure(Exit::program,
-                  fmt::format("{}: it has {} samples a second; it takes {} to hear something", file,
+                  fmt::format("{}: it has {} samples a second; at least {} are needed", file,
                               format.samplerate, drivers::kEarRate));
   if (format.frames / format.samplerate > sf_count_t{3600} * kLongestHours)
-    throw Failure(Exit::program, fmt::format("{}: it lasts for more than an hour", file));
+    throw Failure(Exit::program, fmt::format("{}: it is longer than an hour", file));
   const std::vector<std::int16_t> samples = read_samples(library, sound.get(), format);
   std::vector<drivers::Heard> heard;
   drivers::Ear ear;

@@ -1,4 +1,4 @@
-// Times of a trace, which counts microseconds, and of a TEST, which counts milliseconds.
+// Times of traces, in microseconds, and of TESTs, in milliseconds.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// See trace_file.hpp. May assume nothing of the file.
+// See trace_file.hpp. The file is not trusted.
 #include "rsc/trace/trace_file.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 53;  // 285 years; so that sums do not wrap
+constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 53;  // 285 years; sums cannot overflow
 
 [[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& why) {
   throw Failure(
@@ -23,7 +23,7 @@ constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 53;  // 285 years; so th
                   line, why));
 }
 
-// A device may give bytes without an end.
+// A device may never end.
 bool next_line(std::ifstream& stream, std::string& text, const std::string& file,
                std::size_t number) {
   constexpr std::size_t kLongest = std::size_t{1024} * 1024;  // an image of 64 KB takes 128 KB
@@ -36,7 +36,7 @@ bool next_line(std::ifstream& stream, std::string& text, const std::string& file
   return !text.empty();
 }
 
-// Gives the lines their programs and times.
+// Assigns programs and times to the lines.
 class Counting {
 public:
   explicit Counting(const std::string& file) : file_(file) {}
@@ -48,7 +48,7 @@ public:
     }
     if (const auto time = line.event.find("t_us"); time != line.event.end()) {
       if (!time->is_number_unsigned() || time->get<std::uint64_t>() > kLatestUs - begin_us_)
-        fail(file_, line.number, "`t_us` is no program time");
+        fail(file_, line.number, "`t_us` is not a program time");
       at_us_ = std::max(at_us_, begin_us_ + time->get<std::uint64_t>());
       has_begun_ = true;
     }
@@ -59,8 +59,8 @@ public:
 private:
   const std::string& file_;
   std::size_t program_ = 1;
-  bool has_begun_ = false;      // something of a program has been seen
-  std::uint64_t begin_us_ = 0;  // of the program that runs
+  bool has_begun_ = false;      // an event of a program has been seen
+  std::uint64_t begin_us_ = 0;  // of the current program
   std::uint64_t at_us_ = 0;
 };
 
@@ -82,21 +82,21 @@ void read_trace(const std::string& file, const std::function<void(const TraceLin
   TraceLine line;
   for (std::string text; next_line(stream, text, file, line.number + 1);) {
     ++line.number;
-    const bool is_cut = stream.eof();  // every whole line has its end
+    const bool is_cut = stream.eof();  // every complete line ends with a newline
     line.event = Json::parse(text, nullptr, false);
     if (is_cut && line.event.is_discarded()) {
-      std::cerr << fmt::format("note: {}:{}: this line was cut, and is left out\n", file,
+      std::cerr << fmt::format("note: {}:{}: this line is incomplete, and is left out\n", file,
                                line.number);
       return;
     }
     if (!line.event.is_object() || !line.event.contains("event") ||
         !line.event["event"].is_string())
-      fail(file, line.number, "this is no line of a trace");
+      fail(file, line.number, "this is not a line of a trace");
     counting.place(line);
     see(line);
   }
   if (stream.bad() || line.number == 0)
-    throw Failure(Exit::outside, fmt::format("{}: there is nothing to read in it", file));
+    throw Failure(Exit::outside, fmt::format("{}: it is empty, or cannot be read", file));
 }
 
 }  // namespace robosync::tool

@@ -1,4 +1,4 @@
-// Traces as `rsc run --trace` and `rsc monitor --format json` write them: one JSON object a line.
+// Reads traces from `rsc run --trace` and `rsc monitor --format json`: one JSON object per line.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ namespace robosync::tool {
 struct TraceLine {
   std::size_t number = 0;   // in the file, from 1
   std::size_t program = 0;  // 1 for the first one; a monitor may see several, one after the other
-  std::uint64_t at_us = 0;  // program time, and that of the programs before: it never goes back
+  std::uint64_t at_us = 0;  // program time plus that of earlier programs: it never goes back
   nlohmann::ordered_json event;
 
-  // Empty when the event does not have it.
+  // Empty if the event does not have it.
   [[nodiscard]] std::string text(const char* key) const;
 };
 
-// Calls `see` for each line. One that a monitor wrote without a time has that of the line before. A last line that was
-// cut, as by a computer that was switched off, is left out, with a note on stderr. Throws Failure: outside when the file
-// cannot be read; program, with file and line, when it is no trace.
+// Calls `see` for each line. A line that a monitor wrote without a time has that of the previous line. An incomplete
+// last line, as after a power cut, is left out with a note on stderr. Throws Failure: outside if the file cannot be
+// read; program, with file and line, if it is not a trace.
 void read_trace(const std::string& file, const std::function<void(const TraceLine&)>& see);
 
 }  // namespace robosync::tool

@@ -11,12 +11,12 @@
 
 namespace robosync::tool {
 
-// Where the numbers in events point to. `image` must outlive it. Without an image, or for a number
-// that it does not have, the number itself is shown.
+// The names behind the numbers in events. `image` must outlive it. Without an image, or for a
+// number that it does not have, the number itself is shown.
 struct TraceNames {
   const vm::Image* image = nullptr;
   std::vector<link::ThreadInfo> threads;  // by rank; may be empty
-  const Origin* origin = nullptr;         // what the source says of names, where it is known
+  const Origin* origin = nullptr;         // what the source says about names, if known
 };
 
 // Does the event name a thread by its rank?
@@ -25,7 +25,7 @@ struct TraceNames {
 // One JSON object without newline: t_us, step, event, names, values, source line.
 [[nodiscard]] std::string trace_json(const link::Event& event, const TraceNames& names);
 
-// "touch LEVEL = 2", and the same behind its time: "   0.020 s  touch LEVEL = 2".
+// "touch LEVEL = 2", and the same after its time: "   0.020 s  touch LEVEL = 2".
 [[nodiscard]] std::string trace_words(const link::Event& event, const TraceNames& names);
 [[nodiscard]] std::string trace_line(const link::Event& event, const TraceNames& names);
 

@@ -28,7 +28,7 @@ std::string key_of_param(std::size_t param) {
   return std::string(key.ends_with('_') ? key.substr(0, key.size() - 1) : key);
 }
 
-// Thousandths as a JSON number that reads as it is said: 2, 0.5.
+// Thousandths as a plain JSON number: 2, 0.5.
 Json json_number(vm::Value value) {
   if (value == vm::kUnknown) return nullptr;
   if (value % vm::kScale == 0) return value / vm::kScale;
@@ -106,7 +106,7 @@ void add_object(Json& object, const EventReader& reader) {
 }
 
 void add_value(Json& object, const EventReader& reader) {
-  // The board stores the moment of a RESTART; what the program reads of the TIMER then is 0.
+  // The board stores the time of a RESTART; the program then reads 0 from the TIMER.
   const bool restarted = reader.shape().subject == About::variable && reader.is_timer();
   const vm::Value value = restarted ? 0 : reader.value(0);
   const Meaning meaning = reader.meaning();

@@ -26,13 +26,13 @@ std::string command_words(const EventReader& reader) {
   if (const auto word = reader.word_name()) text += " " + shown_word(*word);
   reader.for_each_param([&](std::size_t param, vm::Value given) {
     const std::string_view spelling = kParamWords.at(param);
-    if (spelling.empty() || reader.is_said(param)) return;  // its word says it
+    if (spelling.empty() || reader.is_said(param)) return;  // the verb's word says it
     text += fmt::format(" {} {}", spelling, reader.shown(param, given));
   });
   return reader.is_carried_out() ? text : text + " (not done: a value is unknown)";
 }
 
-// Only a rule with ELSE has two sides to tell apart.
+// Only a rule with ELSE has two sides.
 std::string side(const EventReader& reader) {
   return reader.value(0) == 0 ? "ELSE" : "DO";
 }
@@ -45,7 +45,7 @@ std::string interrupt_words(const EventReader& reader) {
                      reader.behavior_name(reader.event().object));
 }
 
-// Of a behaviour of its own, it is in its own way.
+// A rule may be denied by its own behaviour.
 std::string denial_words(const EventReader& reader) {
   if (reader.event().object == link::kStop) return "the robot is stopped";
   if (!reader.interrupts_itself())
@@ -132,7 +132,7 @@ std::string device_words(const EventReader& reader) {
                             silent ? "does not answer" : "answers again", reader.value(0));
 }
 
-// What an algorithm makes is as old as what it was made of: where that is never stale, its module was stopped.
+// An algorithm's output is as old as its input: if that is never stale, the module was stopped.
 std::string why_stale(const EventReader& reader) {
   if (!reader.is_made()) return "no reading for too long";
   return reader.channel()->stale_ms == 0 ? "its module was stopped"
@@ -185,7 +185,7 @@ std::string trace_words(const link::Event& event, const TraceNames& names) {
   return other_words(reader);
 }
 
-// A text of the program may hold what a terminal obeys.
+// A text of the program may contain terminal control characters.
 std::string trace_line(const link::Event& event, const TraceNames& names) {
   constexpr char kDelete = 0x7F;
   std::string line = seconds_text(event.time_us, 4) + "  ";

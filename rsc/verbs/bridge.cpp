@@ -22,7 +22,7 @@ void add_bridge(Options& options) {
   add_port_option(options, asked->port);
   add_key_option(options, asked->key);
   options.option("--name", "ROBOT", asked->name,
-                 "what it is called there: topics begin with robosync/ROBOT; else robot");
+                 "its name there: topics begin with robosync/ROBOT; else robot");
   add_duration_option(options, "--duration", asked->duration, "how long; else until Ctrl-C");
   options.runs([asked] {
     const Mqtt::Place broker = parse_broker(asked->mqtt);

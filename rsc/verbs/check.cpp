@@ -36,7 +36,7 @@ struct CheckOptions {
   Report format = Report::human;
 };
 
-// Several files make one report.
+// Several files give one report.
 void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
   for (const auto& diagnostic : one.at("diagnostics"))
     all["diagnostics"].push_back(diagnostic);
@@ -44,7 +44,7 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
     all[count] = all.at(count).get<std::size_t>() + one.at(count).get<std::size_t>();
 }
 
-// What a program costs, also one that is too much for its board.
+// The cost of a program, even of one that is too much for its board.
 void report_timing(const CheckOptions& options, const std::string& file, compiler::Result& compiled,
                    nlohmann::ordered_json& report) {
   const Program program(std::move(compiled.image), file, memory_of(compiled.board));
@@ -63,7 +63,7 @@ void report_timing(const CheckOptions& options, const std::string& file, compile
   }
 }
 
-// From standard input too: then robot.json is that of this folder.
+// Also from standard input, with the robot.json of this folder.
 class CheckedTexts : public Texts {
 public:
   [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
@@ -96,13 +96,13 @@ public:
     if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
   }
 
-  // One that cannot be read is not one without mistakes.
+  // A file that cannot be read must not look like one without errors.
   void note_failure(const std::string& file, const Failure& failure) {
     if (*failure.what() != '\0')
       report_["not_checked"].push_back({{"file", file}, {"why", failure.what()}});
   }
 
-  // When all files have been looked at.
+  // After all files have been checked.
   void finish() const {
     if (options_.format == Report::json) std::cout << report_.dump() << '\n';
     if (options_.format == Report::sarif) std::cout << log_.text();
@@ -138,7 +138,7 @@ void add_check(Options& options) {
                     Options::Need::required);
   options.flag("--timing", asked->timing,
                "show what a step costs, rule by rule, and the memory it takes");
-  options.flag("--anyway", asked->anyway, "also when it is too much for the board of robot.json");
+  options.flag("--anyway", asked->anyway, "even if it is too much for the board in robot.json");
   add_compile_options(options, asked->how);
   options.choice(
       "--format", {"human", "json", "sarif"},

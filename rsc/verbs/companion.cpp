@@ -45,19 +45,17 @@ void list(const CompanionOptions& options) {
   }
 }
 
-// Of robot.json, the algorithms that run here.
+// The algorithms of robot.json that run here.
 std::vector<compiler::SensorConfig> algorithms_of(const std::string& config) {
   std::vector<compiler::SensorConfig> found = companion_algorithms(config, true);
   if (found.empty())
-    throw Failure(
-        Exit::program,
-        fmt::format("{} has no algorithm that runs on a companion computer; `rsc companion "
-                    "--list` says which there are",
-                    config));
+    throw Failure(Exit::program, fmt::format("{} has no algorithm that runs on a companion "
+                                             "computer; `rsc companion --list` lists them",
+                                             config));
   return found;
 }
 
-// A path that is not there is a mistake; other names are for ALSA, or number a camera.
+// A path that does not exist is an error; other names are ALSA's, or the number of a camera.
 void check_source(const std::string& source) {
   std::error_code error;
   if (source.find('/') != std::string::npos && !std::filesystem::exists(source, error))
@@ -69,7 +67,7 @@ void check_programs(const std::vector<compiler::SensorConfig>& algorithms,
   for (const compiler::SensorConfig& algorithm : algorithms)
     if (find_companion_program(algorithm.companion->module, folder).empty())
       throw Failure(Exit::outside,
-                    fmt::format("{}: the program of the module {} is not installed: run "
+                    fmt::format("{}: the program for the module {} is not installed: run "
                                 "scripts/companion (docs/companion.md)",
                                 algorithm.name.text, algorithm.companion->module));
 }
@@ -95,7 +93,7 @@ void run(const CompanionOptions& options) {
   if (!options.record.empty()) viewers.push_back(&recorder.emplace(options.record));
   Watch watch(session, place, viewers);
   watch.show(options.duration);
-  if (companion.has_failed()) throw Failure(Exit::outside, "nothing hears or sees any more");
+  if (companion.has_failed()) throw Failure(Exit::outside, "no module hears or sees any more");
 }
 
 }  // namespace
@@ -107,20 +105,20 @@ void add_companion(Options& options) {
   add_key_option(options, asked->key);
   options.option("--config", "FILE", asked->config, "robot.json; else the one in this folder");
   options.option("--camera", "DEV|FILE", asked->sources.camera,
-                 "a camera (/dev/video0), a picture or a film; else /dev/video0");
+                 "a camera (/dev/video0), a picture or a video; else /dev/video0");
   options.option("--microphone", "DEV|FILE", asked->sources.microphone,
-                 "a microphone as ALSA calls it (see `arecord -L`), or a sound; else default");
+                 "an ALSA microphone (see `arecord -L`), or a sound file; else default");
   options.option("--preview", "FILE.png", asked->sources.preview,
-                 "what the camera saw, with what was found in it, once a second");
+                 "the camera's picture with what was found in it, once a second");
   options.option("--programs", "FOLDER", asked->sources.programs,
-                 "where the programs of the modules stand; else beside rsc or on the PATH");
+                 "where the modules' programs are; else beside rsc or on the PATH");
   add_duration_option(options, "--duration", asked->duration, "how long; else until Ctrl-C");
   options.flag("--monitor", asked->monitor,
-               "show what the robot does, as rsc monitor, in the place of what it is told");
+               "show what the robot does, like rsc monitor, instead of what it is told");
   add_format_option(options, asked->format);
   options.option("--record", "R.jsonl", asked->record,
-                 "write down what the robot does, for rsc replay");
-  options.flag("--list", asked->list, "say which modules there are, and which are installed");
+                 "record what the robot does, for rsc replay");
+  options.flag("--list", asked->list, "list the modules, and which are installed");
   options.runs([asked] { run(*asked); });
 }
 

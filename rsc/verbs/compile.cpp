@@ -69,7 +69,7 @@ void compile(const OutputOptions& options) {
   }
   const Program program(std::move(result.image), options.file, memory_of(result.board));
   check_output(output, names_of(result.sources));
-  // The report would stand in the middle of an image that goes to stdout.
+  // If the image goes to stdout, the report must not.
   std::ostream& out = is_stdout(output) ? std::cerr : std::cout;
   write_output(output, program.bytes());
   options.format == Format::json ? print_json(out, output, program)
@@ -83,7 +83,7 @@ void add_compile(Options& options) {
   options.argument("FILE", asked->file, "program (.rsl)", Options::Need::required);
   options.option("-o,--output", "X.rsb", asked->output, "the image; else STEM.rsb");
   options.flag("--strip", asked->strip, "leave the source lines out");
-  options.flag("--anyway", asked->anyway, "also when it is too much for the board of robot.json");
+  options.flag("--anyway", asked->anyway, "even if it is too much for the board in robot.json");
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);

@@ -34,7 +34,7 @@ struct ExplainOptions {
   Format format = Format::human;
 };
 
-// E0301, w0203: a letter and four digits. A file would have a dot or a folder in its name.
+// E0301, w0203: a letter and four digits. A file name would have a dot or a folder.
 bool looks_like_code(const std::string& what) {
   constexpr std::size_t kLength = 5;
   return what.size() == kLength && std::string_view("EWNewn").find(what[0]) != std::string::npos &&
@@ -68,43 +68,49 @@ void explain_code(const ExplainOptions& options) {
   std::cout << report.dump() << '\n';
 }
 
-// The configuration only says which actuators belong together, so a program can do without one;
-// what is wrong with it is for `rsc check`.
-std::optional<compiler::Robot> robot_for(const ExplainOptions& options,
-                                         compiler::SourceMap& sources) {
-  std::filesystem::path path;
-  try {
-    path = find_configuration(options.what, options.config);
-  } catch (const Failure&) {
-    return std::nullopt;
-  }
-  const compiler::FileId file = sources.add(path.string(), read_text(path));
-  compiler::Diagnostics ignored;
-  return compiler::read_robot(sources, file, ignored, algorithm_modules());
-}
-
-void explain_file(const ExplainOptions& options) {
-  compiler::SourceMap sources;
-  compiler::Diagnostics diagnostics;
-  const compiler::FileId file = sources.add(options.what, read_text(options.what));
-  const std::optional<compiler::Robot> robot = robot_for(options, sources);
+// A program without a configuration: its syntax is checked, not what its names mean.
+compiler::Result read_alone(const std::string& file) {
+  compiler::Result result;
   compiler::Reading reading;
-  reading.tree = compiler::parse(sources, file, diagnostics);
+  reading.tree = compiler::parse(result.sources, result.sources.add(file, read_text(file)),
+                                 result.diagnostics);
   const Texts texts;
   reading.modules = compiler::load_modules(
-      reading.tree, sources,
+      reading.tree, result.sources,
       [&](const std::string& user, const std::string& name) {
         return read_module(texts, user, name);
       },
-      diagnostics);
-  diagnostics.finish();
-  std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
-  if (diagnostics.errors() > 0) {
-    if (options.format == Format::json) std::cout << compiler::render_json(diagnostics, sources);
-    throw Failure(Exit::program, fmt::format("{}: {}", options.what, summary(diagnostics)));
+      result.diagnostics);
+  result.diagnostics.finish();
+  result.reading = std::make_shared<compiler::Reading>(std::move(reading));
+  return result;
+}
+
+bool has_configuration(const ExplainOptions& options) {
+  if (!options.config.empty()) return true;
+  try {
+    (void)find_configuration(options.what, options.config);
+    return true;
+  } catch (const Failure&) {
+    return false;
   }
-  const std::string text =
-      explain::program_text(reading.trees(), sources, robot ? &*robot : nullptr);
+}
+
+void explain_file(const ExplainOptions& options) {
+  CompileOptions how;
+  how.config = options.config;
+  how.judged = Judged::not_at_all;
+  const compiler::Result result =
+      has_configuration(options) ? compile_file(options.what, how) : read_alone(options.what);
+  std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  if (result.diagnostics.errors() > 0) {
+    if (options.format == Format::json)
+      std::cout << compiler::render_json(result.diagnostics, result.sources);
+    throw Failure(Exit::program, fmt::format("{}: {}", options.what, summary(result.diagnostics)));
+  }
+  const compiler::Reading& reading = *result.reading;
+  const std::string text = explain::program_text(reading.trees(), result.sources,
+                                                 reading.robot ? &*reading.robot : nullptr);
   if (options.format == Format::json) {
     std::cout << nlohmann::ordered_json{{"file", options.what}, {"text", text}}.dump() << '\n';
   } else {

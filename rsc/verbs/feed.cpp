@@ -15,6 +15,7 @@
 #include "rsc/console.hpp"
 #include "rsc/device/line_recorder.hpp"
 #include "rsc/device/printer.hpp"
+#include "rsc/device/robot_upload.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
@@ -31,9 +32,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kQueueTimeout{30000};
-constexpr milliseconds kQueuePause{5};  // a question and its answer take 4 ms of the line
+constexpr milliseconds kQueuePause{5};  // a request and its reply take 4 ms on the line
 constexpr std::uint64_t kFirstMomentsUs = 1'000'000;
-constexpr std::uint64_t kLeadUs = 50'000;  // for a dozen readings, before the first is due
+constexpr std::uint64_t kLeadUs = 50'000;  // time to send a dozen readings before the first is due
 
 struct FeedOptions {
   std::vector<std::string> readings;
@@ -74,20 +75,20 @@ std::string describe(link::FeedError error, const vm::Image& image, const Stimul
     case link::FeedError::not_virtual:
       return fmt::format("{} is measured by the board; only virtual sensors can be fed", name);
     case link::FeedError::queue_full:
-      return "too many readings wait for their time on the board";
+      return "too many readings are waiting on the board";
     case link::FeedError::in_the_past:
       return fmt::format("the program is already past {} ms", stimulus.at_us / 1000);
   }
   return fmt::format("the board refused the reading of {}", name);
 }
 
-// Hands readings over, each in time if the line lets it.
+// Sends readings, each in time if the line is fast enough.
 class Feeder {
 public:
   Feeder(Session& session, const vm::Image& image) : session_(session), image_(image) {}
 
-  // Times of the scenario count from `from_us` of the program, which may be a moment ago: what is due in the first moments
-  // of a program cannot be there in time, so it comes as soon as it can.
+  // Times of the scenario count from program time `from_us`, which may be slightly in the past: readings due right after a
+  // program starts cannot arrive in time, so they are sent as soon as possible.
   void play(const std::vector<Stimulus>& scenario, std::uint64_t from_us) {
     read_clock();
     for (Stimulus stimulus : scenario) {
@@ -102,20 +103,20 @@ public:
     }
   }
 
-  // For the time that a person has named, or for now.
+  // For the time given by --at, or for now.
   void feed(const Stimulus& stimulus) {
     last_due_us_ = std::max(last_due_us_, stimulus.at_us);
     if (!hand_over(stimulus))
       throw Failure(Exit::program,
                     describe(link::FeedError::in_the_past, image_, stimulus) +
-                        ": --at is a time of the program; without it they are for now");
+                        ": --at is a program time; without it the readings are for now");
   }
 
   void note_late() const {
     if (late_ == 0) return;
     std::cerr << fmt::format(
-        "note: {} reading{} of the first moments came a little later than due, as soon as the line "
-        "took {}\n",
+        "note: {} reading{} due right at the start came a little late, as soon as the line took "
+        "{}\n",
         late_, late_ == 1 ? "" : "s", late_ == 1 ? "it" : "them");
   }
 
@@ -138,14 +139,14 @@ private:
                              std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
   }
 
-  // Always true: whether in its time or not.
+  // Always true: in time or late.
   bool hand_over_early(const Stimulus& stimulus) {
     if (stimulus.at_us > program_us() && hand_over(stimulus)) return true;
     if (stimulus.at_us != 0) ++late_;
     return hand_over({0, stimulus.channel, stimulus.value});
   }
 
-  // False when its time is over. A full queue empties as time goes on.
+  // False if its time has passed. A full queue empties as time passes.
   bool hand_over(const Stimulus& stimulus) {
     const auto give_up = session_.client.now() + kQueueTimeout;
     const link::Feed feed{
@@ -185,7 +186,7 @@ Wanted wanted(const FeedOptions& options, const Program& program) {
   return wanted;
 }
 
-// To a program that begins, by its own time; to one that runs already, from now on.
+// A newly started program is fed by its own time, a running one from now on.
 std::uint64_t begin_of_scenario(const FeedOptions& options, Session& session) {
   if (!options.upload.empty()) return 0;
   return session.client.status().program_us / 1000 * 1000 + kLeadUs;
@@ -201,7 +202,7 @@ Program running_program(Session& session) {
   return {std::move(bytes), "the running program"};
 }
 
-// What was uploaded, for those who show what it does.
+// Gives the viewers the uploaded program.
 class Source final : public Viewer {
 public:
   explicit Source(const std::optional<Program>& program) : program_(program) {}
@@ -222,7 +223,7 @@ void check_what_is_asked(const FeedOptions& options) {
   check_output(options.record, {options.scenario, options.upload});
 }
 
-// What is wrong with a scenario is said before anything is uploaded.
+// Errors in the scenario are reported before anything is uploaded.
 void feed(const FeedOptions& options) {
   check_what_is_asked(options);
   std::optional<Program> program;
@@ -257,6 +258,8 @@ void feed(const FeedOptions& options) {
   const std::size_t count = stimuli.scenario.size() + stimuli.readings.size();
   if (watch) {
     watch->show(*options.watch + feeder.rest());
+    if (!options.upload.empty())
+      expect_passed_trial(options.upload, session->client.kept(), *program);
   } else if (options.format == Format::human) {
     std::cout << fmt::format("{} reading{} fed\n", count, count == 1 ? "" : "s");
   }
@@ -272,15 +275,14 @@ void add_feed(Options& options) {
   add_key_option(options, asked->key);
   add_duration_option(options, "--at", asked->at, "program time of the readings; else now");
   options.option("--scenario", "S.json", asked->scenario,
-                 "readings with their times: of the program with --upload, else from now");
+                 "readings with their times: program time with --upload, else from now");
   options.option("--upload", "FILE", asked->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does");
-  options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers begin as the program says");
+  options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers start as the program says");
   add_compile_options(options, asked->how);
   add_duration_option(options, "--watch", asked->watch,
-                      "show what happens, until so long after the last reading is due");
-  options.option("--record", "R.jsonl", asked->record,
-                 "with --watch: write it down for rsc replay");
+                      "show what happens until this long after the last reading is due");
+  options.option("--record", "R.jsonl", asked->record, "with --watch: record it for rsc replay");
   add_format_option(options, asked->format);
   options.runs([asked] { feed(*asked); });
 }

@@ -29,7 +29,7 @@ struct FixOptions {
   bool likely = false;
 };
 
-// The files as they are mended so far; nothing is written before the end.
+// The files with the fixes so far; nothing is written before the end.
 class MendedTexts : public Texts {
 public:
   [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
@@ -51,18 +51,18 @@ public:
   Mender(const std::string& file, const FixOptions& options) : file_(file), options_(options) {}
 
   void mend() {
-    constexpr int kRounds = 10;  // a mend may bring out what it hid
+    constexpr int kRounds = 10;  // a fix may expose another error
     compiler::Result result = compile_file(file_, options_.how, texts_);
     for (int round = 0; round < kRounds && apply(chosen(result), result); ++round)
       result = compile_file(file_, options_.how, texts_);
     texts_.write();
     std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
-    std::cout << fmt::format("{}: {} mended; {}\n", file_, mended_, summary(result.diagnostics));
+    std::cout << fmt::format("{}: {} fixed; {}\n", file_, mended_, summary(result.diagnostics));
     if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
   }
 
 private:
-  // From the last to the first, none that overlaps another.
+  // Sorted from last to first.
   std::vector<Fix> chosen(const compiler::Result& result) {
     std::vector<Fix> fixes;
     for (const compiler::Diagnostic& diagnostic : result.diagnostics.all())
@@ -76,7 +76,7 @@ private:
   bool is_wanted(const compiler::Diagnostic& diagnostic, const Fix& fix,
                  const compiler::SourceMap& sources) {
     const compiler::SourceFile& file = sources.file(fix.span.file);
-    if (file.name().starts_with('<')) return false;  // a module of ours
+    if (file.name().starts_with('<')) return false;  // a library module
     if (fix.applicability == Applicability::certain)
       return diagnostic.level == compiler::Level::error;
     if (!options_.likely || fix.applicability != Applicability::likely) return false;
@@ -93,10 +93,10 @@ private:
     return answer == "y" || answer == "Y" || answer == "yes";
   }
 
-  // False when there was nothing to do.
+  // False if there was nothing to do.
   bool apply(const std::vector<Fix>& fixes, const compiler::Result& result) {
     std::map<compiler::FileId, std::string> changed;
-    std::map<compiler::FileId, std::uint32_t> free;  // in front of the last change
+    std::map<compiler::FileId, std::uint32_t> free;  // start of the previous change
     for (const Fix& fix : fixes) {
       const compiler::SourceFile& file = result.sources.file(fix.span.file);
       const auto [text, first] = changed.try_emplace(fix.span.file, file.text());
@@ -111,7 +111,7 @@ private:
     return !changed.empty();
   }
 
-  // A word between two blanks that is taken out takes one of them with it.
+  // Removing a word between two blanks also removes one blank.
   static std::uint32_t end_of(const Fix& fix, const std::string& text) {
     const auto is_blank = [&](std::size_t at) { return at < text.size() && text[at] == ' '; };
     const bool alone = fix.span.begin == 0 || is_blank(fix.span.begin - 1);
@@ -121,7 +121,7 @@ private:
   const std::string& file_;
   const FixOptions& options_;
   MendedTexts texts_;
-  std::set<std::string> asked_;  // each once
+  std::set<std::string> asked_;  // each is asked once
   std::size_t mended_ = 0;
 };
 
@@ -136,9 +136,9 @@ void fix(const FixOptions& options) {
 void add_fix(Options& options) {
   auto asked = std::make_shared<FixOptions>();
   options.arguments("FILE", asked->files,
-                    "programs (.rsl), which are written again, as is their robot.json",
+                    "programs (.rsl); they and their robot.json are rewritten",
                     Options::Need::required);
-  options.flag("--likely", asked->likely, "ask about the mends that are likely, too");
+  options.flag("--likely", asked->likely, "also ask about fixes that are likely");
   add_compile_options(options, asked->how);
   options.runs([asked] { fix(*asked); });
 }

@@ -1,4 +1,4 @@
-// rsc flash --board NAME [FILE] [--drive FOLDER | --by drive|openocd|pyocd]
+// rsc flash --board NAME [FILE] [--drive FOLDER | --by drive|openocd|pyocd|dfu-util]
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using compiler::Board;
 
-enum class Way : std::uint8_t { drive, openocd, pyocd };
-const std::vector<std::string> kWays = {"drive", "openocd", "pyocd"};
+enum class Way : std::uint8_t { drive, openocd, pyocd, dfu_util };
+const std::vector<std::string> kWays = {"drive", "openocd", "pyocd", "dfu-util"};
 
 struct FlashOptions {
   std::string board, file, drive;
@@ -46,7 +46,7 @@ Board board_called(const std::string& name) {
                                               : fmt::format("boards: {}", fmt::join(names, ", "))));
 }
 
-// An emulated one is not programmed.
+// Emulated boards are not flashed.
 std::string boards_to_flash() {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
@@ -56,7 +56,7 @@ std::string boards_to_flash() {
 
 void say_what_next(const Board& board) {
   std::cout << fmt::format(
-      "`rsc ports` shows at which port the {} is, and `rsc info --port PORT` what runs there.\n",
+      "`rsc ports` shows the port of the {}, and `rsc info --port PORT` what runs there.\n",
       board.name);
 }
 
@@ -66,22 +66,33 @@ void copy_to(const fs::path& drive, const FlashOptions& options, const Board& bo
     throw Failure(Exit::outside, drive.string() + ": there is no such folder");
   const fs::path file = find_firmware(options.file, board.name, {board.flash->drive_takes});
   const std::vector<std::byte> bytes = read_bytes(file);
-  std::cout << fmt::format("copies {} ({} bytes) to the drive {}\n", file.string(), bytes.size(),
+  std::cout << fmt::format("copying {} ({} bytes) to the drive {}\n", file.string(), bytes.size(),
                            drive.string());
   write_in_place(drive / file.filename(), bytes);
-  std::cout << "The board programs itself, leaves as a drive and comes back. If there is a "
-               "FAIL.TXT then, it says "
-               "why it could not.\n";
+  std::cout << "The board programs itself; its drive disappears and comes back. A FAIL.TXT on it "
+               "then says why it could not.\n";
   say_what_next(board);
 }
 
-// A word of openocd's own commands: one that it takes as it is.
+// Quotes a word for openocd's command language.
 std::string braced(const fs::path& file) {
   return "{" + fs::absolute(file).string() + "}";
 }
 
 std::vector<std::string> command_of(Way way, const Board::Flash& flash, const fs::path& file) {
   if (way == Way::pyocd) return {"pyocd", "flash", "--target", flash.pyocd, file.string()};
+  if (way == Way::dfu_util) {
+    const std::size_t space = flash.dfu.find(' ');
+    return {"dfu-util",
+            "-d",
+            flash.dfu.substr(0, space),
+            "-a",
+            "0",
+            "-s",
+            flash.dfu.substr(space + 1) + ":leave",
+            "-D",
+            file.string()};
+  }
   std::vector<std::string> command = {"openocd"};
   std::istringstream scripts(flash.openocd);
   for (std::string script; scripts >> script;)
@@ -91,12 +102,18 @@ std::vector<std::string> command_of(Way way, const Board::Flash& flash, const fs
 }
 
 void program_by(Way way, const FlashOptions& options, const Board& board) {
-  const fs::path file = find_firmware(options.file, board.name, {".elf", ".hex"});
+  const bool by_dfu = way == Way::dfu_util;
+  const fs::path file = by_dfu ? find_firmware(options.file, board.name, {".bin"})
+                               : find_firmware(options.file, board.name, {".elf", ".hex"});
   const std::vector<std::string> command = command_of(way, *board.flash, file);
-  std::cout << fmt::format("runs {}\n", fmt::join(command, " ")) << std::flush;
+  std::cout << fmt::format("running {}\n", fmt::join(command, " ")) << std::flush;
   if (const int code = run_program(command); code != 0) {
-    throw Failure(Exit::outside, fmt::format("{} ended with {}: is the board connected, by {}?",
-                                             command.front(), code, board.flash->socket));
+    const std::string question =
+        by_dfu
+            ? "is the chip's own USB connected, and its boot loader running (BOOT0 high at reset)?"
+            : fmt::format("is the board connected by {}?", board.flash->socket);
+    throw Failure(Exit::outside,
+                  fmt::format("{} ended with {}: {}", command.front(), code, question));
   }
   say_what_next(board);
 }
@@ -107,8 +124,8 @@ void program_by(Way way, const FlashOptions& options, const Board& board) {
       Exit::outside,
       fmt::format(
           "no board found: no drive {} is mounted, and neither openocd nor pyocd is installed.\n"
-          "  Connect {} of the {}, and open its drive {}, so that it is mounted; where it is "
-          "somewhere else, say --drive FOLDER.\n"
+          "  Connect {} of the {}, and open its drive {}, so that it is mounted; if it is mounted "
+          "elsewhere, give --drive FOLDER.\n"
           "  Or install openocd (apt install openocd), which needs no drive.",
           flash.drive, flash.socket, board.name, flash.drive));
 }
@@ -128,8 +145,12 @@ void flash(const FlashOptions& options) {
   if (may(Way::drive))
     if (const auto drive = mounted_drive(board.flash->drive))
       return copy_to(*drive, options, board);
-  for (const Way way : {Way::openocd, Way::pyocd}) {
+  for (const Way way : {Way::openocd, Way::pyocd, Way::dfu_util}) {
     const std::string& tool = kWays[static_cast<std::size_t>(way)];
+    if (way == Way::dfu_util && board.flash->dfu.empty()) {
+      if (options.by != way) continue;
+      throw Failure(Exit::usage, fmt::format("the {} has no DFU boot loader", board.name));
+    }
     if (may(way) && is_installed(tool)) return program_by(way, options, board);
     if (options.by == way)
       throw Failure(Exit::outside, fmt::format("{} is not installed, or not on PATH", tool));
@@ -141,14 +162,14 @@ void flash(const FlashOptions& options) {
 
 void add_flash(Options& options) {
   auto asked = std::make_shared<FlashOptions>();
-  options.option("--board", "NAME", asked->board, "which board (needed): " + boards_to_flash());
+  options.option("--board", "NAME", asked->board, "the board (required): " + boards_to_flash());
   options.argument("FILE", asked->file,
-                   "its firmware; else robosync-NAME here or in build/firmware",
+                   "the firmware; else robosync-NAME here or in build/firmware",
                    Options::Need::optional);
   options.option("--drive", "FOLDER", asked->drive, "where its drive is mounted");
   options.choice(
       "--by", kWays, [asked](std::size_t way) { asked->by = static_cast<Way>(way); },
-      "how; else by its drive, or by what is installed");
+      "how; else by its drive, or with what is installed");
   options.runs([asked] { flash(*asked); });
 }
 

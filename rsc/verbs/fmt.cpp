@@ -27,7 +27,7 @@ struct FormatOptions {
   bool check = false;
 };
 
-// What the text would be; nothing when something is wrong with it, which has been said then.
+// The formatted text; nothing if it has errors, which are printed.
 std::optional<std::string> formatted(const std::string& name, const std::string& text) {
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
@@ -36,12 +36,12 @@ std::optional<std::string> formatted(const std::string& name, const std::string&
   diagnostics.finish();
   if (diagnostics.errors() > 0) {
     std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr())
-              << fmt::format("{}: {}; it stays as it is\n", name, summary(diagnostics));
+              << fmt::format("{}: {}; it is unchanged\n", name, summary(diagnostics));
     return std::nullopt;
   }
   std::optional<std::string> result = compiler::formatted(sources, file);
   if (!result)
-    std::cerr << fmt::format("{}: cannot be formatted without changing it; it stays as it is\n",
+    std::cerr << fmt::format("{}: cannot be formatted without changing it; it is unchanged\n",
                              name);
   return result;
 }
@@ -56,7 +56,7 @@ bool format_file(const std::string& name, bool check) {
   return !check;
 }
 
-// Reads stdin and writes stdout, as editors want it.
+// Reads stdin and writes stdout, for editors.
 bool format_stdin() {
   const std::string text = read_text("/dev/stdin");
   const std::optional<std::string> result = formatted("<stdin>", text);
@@ -76,10 +76,9 @@ void format(const FormatOptions& options) {
 
 void add_fmt(Options& options) {
   auto asked = std::make_shared<FormatOptions>();
-  options.arguments(
-      "FILE", asked->files,
-      "programs (.rsl), which are written again where they change; -: stdin to stdout",
-      Options::Need::required);
+  options.arguments("FILE", asked->files,
+                    "programs (.rsl), rewritten if they change; -: stdin to stdout",
+                    Options::Need::required);
   options.flag("--check", asked->check, "change nothing; exit 1 when a file would change");
   options.runs([asked] { format(*asked); });
 }

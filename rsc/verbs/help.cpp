@@ -14,7 +14,7 @@ void add_help(Options& options) {
   options.argument("VERB", *verb, "the verb to explain; without it, all are listed",
                    Options::Need::optional);
   auto man = std::make_shared<bool>(false);
-  options.flag("--man", *man, "all of it, as a page for man");
+  options.flag("--man", *man, "everything, as a man page");
   options.runs([verb, man] {
     if (*man)
       std::cout << manual_page(all_usage());

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What the running program takes, part by part: worked out from its image, as the board does it.
+// The running program's memory, part by part, computed from its image as the board does.
 using Shares = std::array<std::uint32_t, policy::kWhose>;
 std::optional<Shares> shares_of(const link::HelloReply& board, std::span<const std::byte> bytes) {
   vm::Image image;
@@ -87,7 +87,7 @@ Json status_json(const Past& past) {
           {"last_fault", last_fault_json(past)}};
 }
 
-// What stands on the board's buses: `said` by the board, of the program in `bytes`.
+// The board's buses: `said` is the board's report about the program in `bytes`.
 struct Buses {
   Buses(std::span<const std::byte> bytes, const link::Devices& said) : clears(said.bus_clears) {
     vm::Image image;
@@ -142,7 +142,7 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   std::cout << "reset     " << keeping_text(kept) << '\n';
   if (kept.given_up_hash != link::ProgramHash{})
     std::cout << fmt::format(
-        "given up  program {}: in its trial a thread of it faulted, or a SAFETY rule tripped\n",
+        "given up  program {}: in its trial one of its threads faulted, or a SAFETY rule tripped\n",
         text_of(kept.given_up_hash));
   if (kept.state != link::Keeping::no_store)
     std::cout << "rollback  " << rollback_text(kept) << '\n';

@@ -20,8 +20,8 @@ void add_keygen(Options& options) {
     const auto key = OwnerKey::make(where);
     std::cout << fmt::format(
         "{} is your key {}\n"
-        "keep a copy of it where nobody else comes: a robot that is paired with it takes orders "
-        "from no other\n"
+        "keep a copy where nobody else can reach it: a robot paired with it takes orders from no "
+        "other key\n"
         "next: rsc pair --port PORT, in the first minute after the robot was switched on\n",
         where.string(), id_of(key->public_key()));
   });

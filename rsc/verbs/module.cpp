@@ -30,7 +30,7 @@ void print(const Finding& finding) {
   std::cout << std::flush;
 }
 
-// Of a compiled module it is the C file beside it.
+// For a compiled module, the C file next to it.
 std::optional<std::string> source_of(const std::string& file) {
   const fs::path source = fs::path(file).replace_extension(".c");
   std::error_code error;
@@ -38,7 +38,7 @@ std::optional<std::string> source_of(const std::string& file) {
   return source.string();
 }
 
-// With the usual parameters, the least and the most: the first three of its configurations.
+// With the default, the lowest and the highest parameters: the first three configurations.
 Finding try_cost(const std::string& source, const std::string& file, const WorkFolder& folder) {
   constexpr std::size_t kConfigs = 3, kPeriods = 3;
   const module_files::Loaded loaded = module_files::load(file);
@@ -51,28 +51,28 @@ Finding try_cost(const std::string& source, const std::string& file, const WorkF
     const std::uint32_t counted = count_instructions(source, one, module, folder);
     most = std::max(most, counted);
     if (counted > declared)
-      return {"it costs no more than it says",
+      return {"it costs no more than it states",
               fmt::format("a sample took {} instructions on the Cortex-M4, and its cost() is {}: "
                           "the robot would "
                           "give the module a lower rank, and then stop it",
                           counted, declared)};
   }
-  return {
-      fmt::format("it costs no more than it says: {} instructions on the Cortex-M4 at most", most),
-      ""};
+  return {fmt::format("it costs no more than it states: {} instructions on the Cortex-M4 at most",
+                      most),
+          ""};
 }
 
-// Messages show the one, robot.json names the other.
+// Messages show its own name, robot.json uses the file name.
 void note_another_name(const std::string& file) {
   const std::string named = fs::path(file).stem().string();
   const robosync_description* const description = module_files::load(file).description;
   if (description != nullptr && description->name != named)
     std::cout << fmt::format(
-        "note    it calls itself `{}`, and its file is `{}`: give both one name\n",
+        "note    it calls itself `{}`, but its file is `{}`: give both the same name\n",
         description->name, named);
 }
 
-// True when all is kept.
+// True if the module keeps every promise.
 bool check(const std::string& file, const std::optional<std::string>& source,
            const WorkFolder& folder) {
   bool fine = true;
@@ -84,13 +84,13 @@ bool check(const std::string& file, const std::optional<std::string>& source,
   note_another_name(file);
   if (!source || !can_count()) {
     std::cout << fmt::format(
-        "not tried: what it costs, and whether it needs floating point; that needs {}\n",
+        "not tested: its cost, and its use of floating point; this needs {}\n",
         source ? "arm-none-eabi-gcc and qemu-system-arm" : "its C file beside it");
     return true;
   }
   const bool floats = uses_floating_point(*source, folder);
   print({"it computes without floating point",
-         floats ? "process() on the board need not come to what it comes to here" : ""});
+         floats ? "process() may give other outputs on the board than here" : ""});
   if (floats) return false;
   const Finding cost = try_cost(*source, file, folder);
   print(cost);
@@ -107,9 +107,8 @@ void run(const ModuleOptions& options) {
   const bool is_source = fs::path(options.file).extension() == ".c";
   const std::string file = is_source ? compile_for_here(options.file, folder) : options.file;
   if (!check(file, source_of(options.file), folder))
-    throw Failure(Exit::program,
-                  fmt::format("{} does not keep to what a module must", options.file));
-  std::cout << fmt::format("{} is a module that keeps its word, as far as it has been tried\n",
+    throw Failure(Exit::program, fmt::format("{} breaks the rules for modules", options.file));
+  std::cout << fmt::format("{} is a module that does what it declares, as far as it was tested\n",
                            options.file);
 }
 
@@ -117,10 +116,9 @@ void run(const ModuleOptions& options) {
 
 void add_module(Options& options) {
   auto asked = std::make_shared<ModuleOptions>();
-  options.argument("ACTION", asked->action, "check: hold the module against its own declaration",
+  options.argument("ACTION", asked->action, "check: test the module against its declaration",
                    Options::Need::required);
-  options.argument("FILE", asked->file,
-                   "the module: its C file, or what a compiler has made of it (.so)",
+  options.argument("FILE", asked->file, "the module: its C file, or compiled (.so)",
                    Options::Need::required);
   options.runs([asked] { run(*asked); });
 }

@@ -31,7 +31,7 @@ struct MonitorOptions {
   bool plain = false;
 };
 
-// On a terminal the whole screen; else lines.
+// The full screen on a terminal, else lines.
 std::unique_ptr<Viewer> view_of(const MonitorOptions& options) {
   if (!options.plain && options.format == Format::human)
     if (auto terminal = screen::Terminal::open())
@@ -41,8 +41,7 @@ std::unique_ptr<Viewer> view_of(const MonitorOptions& options) {
 
 void monitor(const MonitorOptions& options) {
   if (!options.how.config.empty() && options.upload.empty())
-    throw Failure(Exit::usage,
-                  "--config goes with --upload FILE: it says what that is compiled for");
+    throw Failure(Exit::usage, "--config goes with --upload FILE, which is compiled for it");
   check_outputs({options.record, options.html}, {options.upload});
   const Place place{options.port, options.key};
   auto session = open_session(place);
@@ -70,11 +69,10 @@ void add_monitor(Options& options) {
   add_format_option(options, asked->format);
   add_duration_option(options, "--duration", asked->duration, "how long; else until Ctrl-C");
   options.flag("--threads", asked->threads,
-               "once a second, every thread's priority and share of the processor, too");
-  options.flag("--plain", asked->plain, "lines on a terminal, too, in place of the full screen");
-  options.option("--record", "R.jsonl", asked->record, "write it down for rsc replay");
-  options.option("--html", "OUT.html", asked->html,
-                 "write a page that shows it at the end, for a browser");
+               "also show each thread's priority and CPU share, once a second");
+  options.flag("--plain", asked->plain, "lines instead of the full screen, also on a terminal");
+  options.option("--record", "R.jsonl", asked->record, "record it for rsc replay");
+  options.option("--html", "OUT.html", asked->html, "at the end, write a web page that shows it");
   options.option("--upload", "FILE", asked->upload,
                  "upload this program first, and again whenever one of its "
                  "files is saved");

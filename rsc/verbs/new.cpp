@@ -48,7 +48,7 @@ void refuse_what_is_there(const fs::path& folder, const NewFiles& files) {
     if (fs::symlink_status(path, error).type() == fs::file_type::not_found || error) continue;
     throw Failure(
         Exit::outside,
-        fmt::format("{} is there already, and `rsc new` writes over nothing: name a new folder",
+        fmt::format("{} already exists, and `rsc new` overwrites nothing: name a new folder",
                     path.string()));
   }
 }
@@ -61,7 +61,7 @@ void make_folder(const fs::path& folder) {
                   fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
 }
 
-// All of it, or nothing: what was written goes again where the rest cannot be.
+// All or nothing: if a file cannot be written, the others are removed.
 void write_files(const fs::path& folder, const NewFiles& files) {
   std::error_code error;
   const bool is_new = !fs::exists(folder, error);
@@ -83,12 +83,12 @@ void write_files(const fs::path& folder, const NewFiles& files) {
 }
 
 std::string_view purpose_of(const TemplateFile& file, const Template& robot) {
-  if (file.name == "robot.rsl") return "what it does, and tests of that";
-  if (file.name == "robot.json") return "what it is made of, and how that is wired";
+  if (file.name == "robot.rsl") return "what it does, and its tests";
+  if (file.name == "robot.json") return "its parts, and how they are wired";
   return file.name == robot.scenario ? "what happens to it in `rsc run`" : "recorded readings";
 }
 
-// As a shell reads it as one name.
+// Quoted so that a shell reads it as one word.
 std::string in_shell(const std::string& folder) {
   constexpr const char* kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+,:@%-";
@@ -101,7 +101,7 @@ void report(const std::string& folder, const Template& robot) {
   std::cout << fmt::format("{} is a robot that {}.\n", folder, robot.summary);
   for (const TemplateFile& file : robot.files)
     std::cout << fmt::format("  {:<16}{}\n", file.name, purpose_of(file, robot));
-  std::cout << "Go on with\n";
+  std::cout << "Next:\n";
   if (fs::path(folder).lexically_normal() != ".")
     std::cout << fmt::format("  cd {}\n", in_shell(folder));
   std::cout << fmt::format(
@@ -119,7 +119,7 @@ void make_robot(const NewOptions& options) {
 
 // --- a module ---
 
-// Its functions begin with its name, and its file is called like it.
+// The module's name, which is also the prefix of its functions and its file name.
 std::string module_name(const std::string& folder) {
   std::string name = fs::absolute(folder).lexically_normal().filename().string();
   if (name.empty())
@@ -130,12 +130,9 @@ std::string module_name(const std::string& folder) {
   constexpr std::size_t kLongest = 40;
   if (name.front() < 'a' || name.front() > 'z' || name.size() > kLongest ||
       !std::ranges::all_of(name, fits))
-    throw Failure(
-        Exit::usage,
-        fmt::format(
-            "a module is called like its folder, so `{}` must be a name in C: small letters, "
-            "digits and _, {} at most",
-            name, kLongest));
+    throw Failure(Exit::usage, fmt::format("a module is named after its folder, so `{}` must be a "
+                                           "C name: lower-case letters, digits and _, {} at most",
+                                           name, kLongest));
   return name;
 }
 
@@ -155,14 +152,13 @@ NewFiles files_of_module(const std::string& name) {
 
 void report_module(const std::string& folder, const std::string& name) {
   std::cout << fmt::format(
-      "{0} is a robot with a module of its own, {1}. To begin with it counts the beats of a pulse "
-      "sensor.\n"
-      "  modules/{1}.c    the module: what it reads, makes of it, and says of itself\n"
+      "{0} is a robot with its own module, {1}, which for now counts the beats of a pulse sensor.\n"
+      "  modules/{1}.c    the module: its inputs, its outputs, and how it describes itself\n"
       "  CMakeLists.txt   compiles it to modules/{1}.so\n"
       "  robot.json       names that file\n"
-      "  robot.rsl        uses what it puts out, and tests that\n"
-      "  pulse.json       a recording of a pulse, made up: pulse.csv\n"
-      "Go on with\n"
+      "  robot.rsl        uses its output, and tests it\n"
+      "  pulse.json       a made-up recording of a pulse, in pulse.csv\n"
+      "Next:\n"
       "  cd {2}\n"
       "  rsc module check modules/{1}.c\n"
       "  cmake -B build && cmake --build build\n"
@@ -173,8 +169,7 @@ void report_module(const std::string& folder, const std::string& name) {
 
 void make_module(const NewOptions& options) {
   if (options.robot)
-    throw Failure(Exit::usage,
-                  "a module comes with a robot of its own: say --module or --template");
+    throw Failure(Exit::usage, "a module comes with its own robot: give --module or --template");
   const std::string name = module_name(options.folder);
   const NewFiles files = files_of_module(name);
   refuse_what_is_there(options.folder, files);
@@ -193,7 +188,7 @@ std::string list_of_templates() {
 
 void add_new(Options& options) {
   auto asked = std::make_shared<NewOptions>();
-  options.argument("FOLDER", asked->folder, "where its files go; it is made when it is not there",
+  options.argument("FOLDER", asked->folder, "where its files go; created if missing",
                    Options::Need::required);
   std::vector<std::string> names;
   for (const Template& robot : templates())
@@ -202,7 +197,7 @@ void add_new(Options& options) {
       "--template", names, [asked](std::size_t index) { asked->robot = index; },
       list_of_templates());
   options.flag("--module", asked->module,
-               "a robot with an algorithm module of its own, called like the folder");
+               "a robot with its own algorithm module, named after the folder");
   options.runs([asked] { asked->module ? make_module(*asked) : make_robot(*asked); });
 }
 

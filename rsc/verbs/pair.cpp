@@ -1,4 +1,4 @@
-// rsc pair --port P [--key FILE]: a person beside the robot makes a key its owner.
+// rsc pair --port P [--key FILE]: a person next to the robot makes a key its owner.
 #include <iostream>
 #include <memory>
 #include <string>
@@ -28,7 +28,8 @@ void add_pair(Options& options) {
     randombytes_buf(owner.seed.data(), owner.seed.size());
     session.client.pair(owner);
     std::cout << fmt::format(
-        "paired with the key {}: {} takes orders from nobody else now; rsc stop is for everybody\n",
+        "paired with the key {}: {} takes orders from nobody else now; rsc stop still works for "
+        "everybody\n",
         id_of(owner.key), text_of(session.board.board));
   });
 }

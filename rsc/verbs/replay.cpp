@@ -30,23 +30,23 @@ struct ReplayOptions {
   Format format = Format::human;
 };
 
-// A trace has no program in it, a recording has.
+// A recording contains its program, a trace does not.
 RecordedRun recording_of(const ReplayOptions& options) {
   RecordedRun run = read_recording(options.file);
   if (run.programs.empty())
-    throw Failure(Exit::program, options.file +
-                                     ": no program begins in it, up to its first gap if it has "
-                                     "one; record from before it is uploaded on");
+    throw Failure(
+        Exit::program,
+        options.file +
+            ": no program starts in it before any gap; start recording before the upload");
   for (const RecordedProgram& one : run.programs)
     if (one.image.empty() && options.program.empty())
-      throw Failure(Exit::usage,
-                    fmt::format("{}:{}: the program that begins here is not in it: name "
-                                "it with --program, or record with --record",
-                                options.file, one.line));
+      throw Failure(Exit::usage, fmt::format("{}:{}: the program that starts here is not in it: "
+                                             "name it with --program, or record with --record",
+                                             options.file, one.line));
   return run;
 }
 
-// That of --program runs in place of all that were recorded.
+// The image of --program, which runs instead of every recorded one.
 std::vector<std::byte> image_of(const ReplayOptions& options) {
   if (options.program.empty()) return {};
   return without_source_lines(load_program(options.program, options.how));
@@ -55,9 +55,9 @@ std::vector<std::byte> image_of(const ReplayOptions& options) {
 void print_program(const ReplayOptions& options, const RecordedProgram& recorded,
                    std::span<const std::byte> image, const Replayed& replayed) {
   if (options.program.empty()) return;
-  std::string_view what = "ran in place of the program that was recorded";
-  if (recorded.image.empty()) what = "ran; which program was recorded is not known";
-  if (std::ranges::equal(image, recorded.image)) what = "is the program that was recorded";
+  std::string_view what = "ran instead of the recorded program";
+  if (recorded.image.empty()) what = "ran; the recorded program is not known";
+  if (std::ranges::equal(image, recorded.image)) what = "is the recorded program";
   std::cout << fmt::format("  {} {}\n", options.program, what);
   if (!replayed.unrecorded.empty())
     std::cout << fmt::format("  it reads {}, which was not recorded and is unknown to it\n",
@@ -72,7 +72,7 @@ void print_human(const ReplayOptions& options, std::size_t number, const Recorde
                            seconds_text(replayed.until_us));
   if (replayed.late > 0)
     std::cout << fmt::format(
-        "  {} of the events were recorded later than they come here, by at most {} ms\n",
+        "  {} of the events were recorded later than in the replay, by at most {} ms\n",
         replayed.late, replayed.latest_us / 1000);
   print_program(options, recorded, image, replayed);
   if (!recorded.gap.empty())
@@ -137,10 +137,11 @@ void replay_all(const ReplayOptions& options) {
 
 void add_replay(Options& options) {
   auto asked = std::make_shared<ReplayOptions>();
-  options.argument("FILE", asked->file, "of --record, or a trace together with --program",
+  options.argument("FILE", asked->file, "a recording from --record, or a trace with --program",
                    Options::Need::required);
-  options.option("--program", "FILE", asked->program,
-                 "runs in place of what was recorded (.rsl or .rsb); a trace has no program in it");
+  options.option(
+      "--program", "FILE", asked->program,
+      "program to run instead of the recorded one (.rsl or .rsb); a trace contains none");
   add_compile_options(options, asked->how);
   add_format_option(options, asked->format);
   options.runs([asked] { replay_all(*asked); });

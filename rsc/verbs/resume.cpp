@@ -1,4 +1,4 @@
-// rsc resume --port P [--key FILE]: ends a stop. What SAFETY rules of the program halt stays halted.
+// rsc resume --port P [--key FILE]: ends a stop. Actuators that SAFETY rules halt stay halted.
 #include <iostream>
 #include <memory>
 #include <string>

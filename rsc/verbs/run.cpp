@@ -37,7 +37,7 @@ namespace robosync::tool {
 namespace {
 
 constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
-// What the last step has set is there when the next one begins; of that only the KEPT numbers are seen.
+// What the last step sets takes effect in the next one; only its KEPT numbers matter then.
 constexpr std::uint64_t kTakesEffectUs = kernel::kTick;
 constexpr std::uint64_t kLongestUnaskedUs = std::uint64_t{3600} * 1'000'000;
 
@@ -51,7 +51,7 @@ struct RunOptions {
   Format format = Format::human;
 };
 
-// To the last reading, where nobody says how long.
+// Up to the last reading, if no duration is given.
 std::uint64_t duration_us(const RunOptions& options, const Scenario& scenario) {
   if (options.duration) return static_cast<std::uint64_t>(options.duration->count()) * 1000;
   if (scenario.duration_us) return *scenario.duration_us;
@@ -59,13 +59,13 @@ std::uint64_t duration_us(const RunOptions& options, const Scenario& scenario) {
   return std::clamp(last_us, kDefaultDurationUs, kLongestUnaskedUs);
 }
 
-// Whoever names a --duration knows it.
+// Not if --duration is given.
 void note_what_is_late(const RunOptions& options, const Scenario& scenario, std::uint64_t end_us) {
   const auto late = std::ranges::upper_bound(scenario.stimuli, end_us, {}, &Stimulus::at_us);
   const auto count = scenario.stimuli.end() - late;
   if (options.duration || count == 0) return;
   std::cerr << fmt::format(
-      "{}: note: the run ends at {}: {} of {} readings come later and do nothing\n",
+      "{}: note: the run ends at {}: {} of {} readings come later and have no effect\n",
       options.scenario, seconds_text(end_us), count, scenario.stimuli.size());
 }
 
@@ -77,7 +77,7 @@ std::vector<std::string> inputs_of(const RunOptions& options, const Program& pro
   return inputs;
 }
 
-// What a run shows while it goes on, and leaves behind.
+// What a run prints while it runs, and the files that it writes.
 class RunOutput {
 public:
   RunOutput(const RunOptions& options, const Program& program, Kept& kept, std::uint64_t end_us)
@@ -93,7 +93,7 @@ public:
 
   void see(const link::Event& event) {
     kept_.see(event);
-    if (names_thread(event)) names_.threads = simulator_->threads();  // as they rank now
+    if (names_thread(event)) names_.threads = simulator_->threads();  // with their present ranks
     if (event.time_us > end_us_) return;
     const std::string json = trace_json(event, names_) + "\n";
     if (!options_.trace.empty() || !options_.record.empty()) trace_ += json;
@@ -104,7 +104,7 @@ public:
       std::cout << trace_line(event, names_) << '\n';
   }
 
-  // `image`: that ran.
+  // `image`: the one that ran.
   void write(std::span<const std::byte> image) {
     kept_.write();
     if (!options_.record.empty()) {
@@ -123,7 +123,7 @@ private:
   const Program& program_;
   Kept& kept_;
   std::uint64_t end_us_;
-  const sim::Simulator* simulator_ = nullptr;  // none of its threads runs before it is there
+  const sim::Simulator* simulator_ = nullptr;  // set before any thread runs
   TraceNames names_;
   Digest digest_;
   std::string trace_;
@@ -158,11 +158,11 @@ void run(const RunOptions& options) {
   output.write(uploaded);
 }
 
-// False: somebody has ended it. A run that lasts is ended by the same signals, as rsc run is without --watch.
+// False: the user ended it. The same signals also end a long run, as without --watch.
 bool waits_until_saved(SavedFiles& saved) {
   constexpr std::chrono::milliseconds kBetweenLooks{100};
   const Interruptible waiting;
-  std::cerr << "rsc: waits until a file is saved; Ctrl-C ends it\n";
+  std::cerr << "rsc: waiting until a file is saved; Ctrl-C ends it\n";
   while (!Interruptible::interrupted()) {
     if (saved.changed()) return true;
     std::this_thread::sleep_for(kBetweenLooks);
@@ -170,7 +170,7 @@ bool waits_until_saved(SavedFiles& saved) {
   return false;
 }
 
-// Until somebody ends it. What is wrong is said, and may be mended meanwhile.
+// Until the user ends it. Errors are printed, and can be fixed meanwhile.
 void run_again_and_again(const RunOptions& options) {
   SavedFiles saved;
   do {
@@ -193,20 +193,19 @@ void run_again_and_again(const RunOptions& options) {
 void add_run(Options& options) {
   auto asked = std::make_shared<RunOptions>();
   options.argument("FILE", asked->file, "program (.rsl) or image (.rsb)", Options::Need::required);
-  options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, when");
+  options.option("--scenario", "S.json", asked->scenario, "what the sensors measure, and when");
   add_duration_option(options, "--duration", asked->duration,
-                      "else the scenario's, else 10s or to its last reading");
+                      "how long; else the scenario's, else 10s or to its last reading");
   options.option("--trace", "T.jsonl", asked->trace, "write the trace as JSON lines");
-  options.option("--record", "R.jsonl", asked->record, "write it down for rsc replay");
-  options.option("--html", "OUT.html", asked->html,
-                 "write a page that shows the run, for a browser");
+  options.option("--record", "R.jsonl", asked->record, "record it for rsc replay");
+  options.option("--html", "OUT.html", asked->html, "write a web page that shows the run");
   options.flag("--watch", asked->watch,
                "run again whenever the program, its configuration or the "
                "scenario is saved");
-  options.flag("--all", asked->all, "show readings and what happens inside as well");
+  options.flag("--all", asked->all, "also show readings and what happens inside");
   options.option("--kept", "K.json", asked->kept,
-                 "keeps the KEPT numbers; else STEM.kept.json beside the program");
-  options.flag("--fresh", asked->fresh, "KEPT numbers begin as the program says");
+                 "file of the KEPT numbers; else STEM.kept.json beside the program");
+  options.flag("--fresh", asked->fresh, "KEPT numbers start as the program says");
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);

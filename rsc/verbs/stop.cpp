@@ -13,7 +13,7 @@ namespace robosync::tool {
 
 namespace {
 
-// Without a hello first, for which a board with much to do may need some time; and beside another rsc, such as a monitor.
+// Without a hello first, which a busy board may answer late; and while another rsc, such as a monitor, has the line.
 void stop_board(const std::string& port) {
   const std::unique_ptr<Transport> transport = open_port(port, Sharing::at_once);
   try {
@@ -21,9 +21,8 @@ void stop_board(const std::string& port) {
   } catch (const Failure& failure) {
     throw Failure(failure.exit(),
                   std::string(failure.what()) +
-                      " It may have stopped all the same: a board with much to do stops first, and "
-                      "answers when it finds the time; and another rsc on this line may have taken "
-                      "the answer");
+                      " It may have stopped all the same: a busy board stops first and answers "
+                      "later, and another rsc on this line may have taken the answer");
   }
 }
 

@@ -25,7 +25,7 @@ struct TeachOptions {
   bool list = false;
 };
 
-// The words themselves are not read: there may be none yet, and who teaches them says what is wrong with them.
+// The words themselves are not read: there may be none yet, and the module's program reports errors in them.
 compiler::SensorConfig algorithm_of(const TeachOptions& options) {
   std::string known;
   for (const compiler::SensorConfig& sensor : companion_algorithms(options.config, false)) {
@@ -36,14 +36,14 @@ compiler::SensorConfig algorithm_of(const TeachOptions& options) {
   throw Failure(
       Exit::program,
       known.empty()
-          ? fmt::format("{} has no algorithm that is taught words: add {{\"name\": \"{}\", "
+          ? fmt::format("{} has no algorithm that can be taught words: add {{\"name\": \"{}\", "
                         "\"module\": \"own_words\"}} to its \"algorithms\" (docs/algorithms.md)",
                         options.config, options.name)
-          : fmt::format("{} has no `{}` that is taught words; it has {}", options.config,
+          : fmt::format("{} has no `{}` that can be taught words; it has {}", options.config,
                         options.name, known));
 }
 
-// What the program of the module is asked to do.
+// The arguments for the module's program.
 std::vector<std::string> task(const TeachOptions& options) {
   const bool teaches = !options.word.empty();
   if (teaches + options.list + !options.forget.empty() != 1)
@@ -52,9 +52,8 @@ std::vector<std::string> task(const TeachOptions& options) {
   if (options.list) return {"--list", "yes"};
   if (!teaches) return {"--forget", options.forget};
   if (options.word.find_first_of("./") != std::string::npos)
-    throw Failure(Exit::usage,
-                  fmt::format("`{0}` stands where the word does: write rsc teach {1} WORD {0}",
-                              options.word, options.name));
+    throw Failure(Exit::usage, fmt::format("`{0}` is not a word: write rsc teach {1} WORD {0}",
+                                           options.word, options.name));
   if (options.recordings.empty() == options.microphone.empty())
     throw Failure(Exit::usage, "give recordings of the word, or --microphone");
   std::vector<std::string> arguments = {"--teach", options.word};
@@ -65,7 +64,7 @@ std::vector<std::string> task(const TeachOptions& options) {
   return arguments;
 }
 
-// It goes on in the place of rsc: what it says, and its exit code, are those of rsc teach.
+// The program replaces rsc: its output and exit code are those of rsc teach.
 [[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments) {
   std::vector<char*> texts = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments)
@@ -81,7 +80,7 @@ void run(const TeachOptions& options) {
   arguments.insert(arguments.begin(), {"--words", config.words_file});
   const std::string program = find_companion_program(config.module, options.programs);
   if (program.empty())
-    throw Failure(Exit::outside, fmt::format("the program of the module {} is not installed: run "
+    throw Failure(Exit::outside, fmt::format("the program for the module {} is not installed: run "
                                              "scripts/companion (docs/companion.md)",
                                              config.module));
   become(program, arguments);
@@ -91,19 +90,19 @@ void run(const TeachOptions& options) {
 
 void add_teach(Options& options) {
   auto asked = std::make_shared<TeachOptions>();
-  options.argument("NAME", asked->name, "of the algorithm in robot.json", Options::Need::required);
+  options.argument("NAME", asked->name, "the algorithm in robot.json", Options::Need::required);
   options.argument("WORD", asked->word, "as the program calls it: a to z, digits and _",
                    Options::Need::optional);
   options.arguments("RECORDING", asked->recordings,
-                    "sounds, in each of which the word is said once: three or more",
+                    "three or more sound files, each with the word said once",
                     Options::Need::optional);
   options.option("--microphone", "DEV|FILE", asked->microphone,
-                 "hear it three times from a microphone (see `arecord -L`), or a sound");
-  options.flag("--list", asked->list, "say which words it knows, and which sound alike");
-  options.option("--forget", "WORD", asked->forget, "take the word away");
+                 "hear it three times from a microphone (see `arecord -L`) or a sound file");
+  options.flag("--list", asked->list, "list the words it knows, and which sound alike");
+  options.option("--forget", "WORD", asked->forget, "remove this word");
   options.option("--config", "FILE", asked->config, "robot.json; else the one in this folder");
   options.option("--programs", "FOLDER", asked->programs,
-                 "where the programs of the modules stand; else beside rsc or on the PATH");
+                 "where the modules' programs are; else beside rsc or on the PATH");
   options.runs([asked] { run(*asked); });
 }
 

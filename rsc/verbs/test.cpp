@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kBefore = 500'000;  // what led to it, in microseconds
+constexpr std::uint64_t kBefore = 500'000;  // shown before a failure, in microseconds
 constexpr std::size_t kTimelineEnds = 15;   // lines at each end of a long timeline
 
 struct TestOptions {
@@ -36,10 +36,10 @@ struct TestOptions {
 struct Tally {
   std::size_t passed = 0, failed = 0;
   Json tests = Json::array();
-  Json diagnostics = Json::array();  // of programs that are wrong
+  Json diagnostics = Json::array();  // of programs with errors
 };
 
-// Prints one test after the other, as they end.
+// Prints each test when it ends.
 class Reporter {
 public:
   Reporter(const TestOptions& options, const compiler::SourceMap& sources, Tally& tally)
@@ -93,7 +93,7 @@ private:
     }
   }
 
-  // The step in its line, underlined, and what went wrong below.
+  // The failed step in its line, underlined, with the reason below.
   void print_step(compiler::Span span, const std::string& reason) const {
     const compiler::SourceFile& source = sources_.file(span.file);
     const compiler::Position at = source.position(span.begin);

@@ -36,7 +36,7 @@ void convert(const TraceOptions& options) {
         Exit::usage,
         fmt::format("`rsc trace {}` does not exist; write `rsc trace convert`", options.what));
   if (options.to == nullptr)
-    throw Failure(Exit::usage, "say into what, as in --to perfetto; there are csv and vcd, too");
+    throw Failure(Exit::usage, "name the format: --to perfetto, csv or vcd");
   if (!options.output.empty()) check_output(options.output, {options.file});
   const std::string text = options.to->convert(options.file);
   if (options.output.empty())
@@ -50,7 +50,7 @@ void convert(const TraceOptions& options) {
 void add_trace(Options& options) {
   auto asked = std::make_shared<TraceOptions>();
   options.argument("convert", asked->what, "what to do with it", Options::Need::required);
-  options.argument("FILE", asked->file, "of rsc run --trace, rsc monitor --format json",
+  options.argument("FILE", asked->file, "a trace from rsc run --trace or rsc monitor --format json",
                    Options::Need::required);
   std::vector<std::string> names;
   names.reserve(std::size(kFormats));

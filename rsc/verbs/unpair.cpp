@@ -1,4 +1,4 @@
-// rsc unpair --port P [--key FILE]: its owner gives a robot up.
+// rsc unpair --port P [--key FILE]: the owner gives the robot up.
 #include <iostream>
 #include <memory>
 #include <string>
@@ -20,7 +20,7 @@ void add_unpair(Options& options) {
     Session session(asked->port);
     session.client.use_key(asked->key);
     session.client.unpair();
-    std::cout << "not paired: whoever has this line gives the robot orders\n";
+    std::cout << "not paired: anyone on this line can give the robot orders\n";
   });
 }
 

@@ -44,16 +44,16 @@ void upload_to_one(const SendOptions& options, const Program& program) {
   const Uploaded uploaded = upload_to(options.ports.front(), program, options,
                                       stderr_is_terminal() ? show_progress : Progress());
   report(options, uploaded, program);
-  expect_trial_stood(options, uploaded, program);
+  expect_passed_trial(options.file, uploaded.kept, program);
 }
 
-// Two threads would each take what the robot answers the other.
+// Otherwise two threads would each take replies meant for the other.
 void expect_different_lines(const std::vector<std::string>& ports) {
-  std::map<std::string, std::string> seen;  // as it was named, by line
+  std::map<std::string, std::string> seen;  // the name as given, by line
   for (const std::string& port : ports) {
     const auto [at, is_new] = seen.emplace(real_name_of(port), port);
     if (is_new) continue;
-    const std::string same = at->second == port ? " is there twice" : " is " + at->second;
+    const std::string same = at->second == port ? " is given twice" : " is " + at->second;
     throw Failure(Exit::usage, fmt::format("--port {}{}: name each robot once", port, same));
   }
 }
@@ -75,17 +75,17 @@ void add_upload(Options& options) {
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_duration_option(options, "--timeout", asked->timeout,
-                      "give up after (10s, longer for a large image)");
+                      "give up after this time (10s, longer for a large image)");
   add_duration_option(options, "--trial", asked->trial,
-                      "wait until it has run for so long, and say whether the robot keeps it");
+                      "wait until it has run this long, and say whether the robot keeps it");
   options.flag("--no-confirm", asked->no_confirm,
-               "only try it: after the trial the kept program comes back");
+               "only try it: the kept program comes back after the trial");
   options.flag("--replace", asked->replace,
-               "end the running program first, where the board has no room for both");
-  options.flag("--fresh", asked->fresh, "KEPT numbers begin as the program says");
+               "end the running program first, if the board has no room for both");
+  options.flag("--fresh", asked->fresh, "KEPT numbers start as the program says");
   options.flag("--anyway", asked->anyway,
-               "also when it is too much for the board, which may refuse it");
-  options.flag("--take", asked->take, "take the line from a host in the midst of an upload");
+               "even if it is too much for the board, which may refuse it");
+  options.flag("--take", asked->take, "take the line from a host that is uploading");
   add_format_option(options, asked->format);
   options.runs([asked] {
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;

@@ -1,5 +1,5 @@
-// The costs of the board that the preset names (ROBOSYNC_BOARD), as its costs.def declares them. The
-// firmware and the tool both compile this, so neither can be built for a board that declares too little.
+// The costs of the board that the preset names (ROBOSYNC_BOARD), as declared in its costs.def. The
+// firmware and the tool both compile this, so neither can be built for a board with missing costs.
 #pragma once
 
 #include "runtime-m4/policy/costs.hpp"

@@ -1,5 +1,5 @@
-// Which kinds of parts the board has, as its profile says (stdlib/boards/NAME.json, profile.cmake): all that portable code knows of
-// it when it is compiled. On the host, what any board has.
+// Which kinds of parts the board has, according to its profile (stdlib/boards/NAME.json, profile.cmake): all that portable code
+// knows about it at compile time. The host has every part that any board has.
 #pragma once
 
 namespace robosync::boards {

@@ -1,6 +1,6 @@
-// What the board that the preset names (ROBOSYNC_BOARD) has for programs: its profile,
-// stdlib/boards/NAME.json, as CMake reads it (profile.cmake). The firmware is built and linked by
-// it, and on the host it is the board that is simulated when nobody says another.
+// The memory for programs on the board that the preset names (ROBOSYNC_BOARD): from its profile,
+// stdlib/boards/NAME.json, as CMake reads it (profile.cmake). The firmware is built and linked with
+// these values; on the host, this is the board that is simulated by default.
 #pragma once
 
 #include "runtime-m4/policy/memory.hpp"

@@ -1,4 +1,4 @@
-// The panel of lights of a board; of one that has none, nothing happens. Nobody but the output guard calls it.
+// The panel of lights of a board; without a panel, nothing happens. Only the output guard calls it.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@ namespace robosync::boards {
 
 class PanelOutput {
 public:
-  // The panel that the program has, from now on: all dark, which it is told with the first picture. Its pin is driven by it alone
-  // until end(), and low between two pictures; nobody else drives it.
+  // Begins with the program's panel, all dark; the panel itself learns this only with the first picture. Until end() the pin
+  // belongs to the panel alone, and is low between two pictures.
   virtual void begin(const policy::Panel& /*panel*/) {}
-  // The picture on it from now on, which is as those of Board::show(). It goes out while the processor does something else; what
-  // has not left of the one before is given up, and that is seen by nobody.
+  // Shows a picture, in the format of Board::show(). It is sent in the background. The rest of an unfinished picture is dropped,
+  // which nobody can see.
   virtual void show(std::uint32_t /*picture*/) {}
-  // Its pin is as it was before. At once.
+  // Returns the pin to its earlier use, immediately.
   virtual void end() {}
 
   constexpr PanelOutput() = default;

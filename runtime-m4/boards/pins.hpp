@@ -1,4 +1,4 @@
-// What the board that the preset names (ROBOSYNC_BOARD) lets programs do with its pins: its profile,
+// What the board that the preset names (ROBOSYNC_BOARD) lets programs do with its pins: from its profile,
 // stdlib/boards/NAME.json, as CMake reads it (profile.cmake). It is part of the firmware: no upload changes it.
 #pragma once
 
@@ -22,7 +22,7 @@ inline constexpr policy::BoardPins kPins = {.outputs = kOutputs,
                                             .i2c_buses = ROBOSYNC_I2C_BUSES,
                                             .serial_lines = ROBOSYNC_SERIAL_LINES};
 
-// A pin that is read is driven by nobody; an analog input alone may be an output for other programs.
+// Nothing drives a pin that is read. Only an analog input may be an output for other programs.
 constexpr bool meet(const auto& these, const auto& those) {
   for (const auto& one : these)
     for (const auto& other : those)

@@ -1,5 +1,5 @@
-# What the profile of the board (stdlib/boards/NAME.json) says of its memory and its pins, for boards/memory.hpp,
-# boards/pins.hpp and the linker.
+# Reads the board's memory and pins from its profile (stdlib/boards/NAME.json), for boards/memory.hpp, boards/pins.hpp and the
+# linker.
 set(board_profile ${PROJECT_SOURCE_DIR}/stdlib/boards/${ROBOSYNC_BOARD}.json)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${board_profile})
 file(READ ${board_profile} profile)
@@ -12,7 +12,7 @@ string(JSON store_bytes ERROR_VARIABLE any GET "${profile}" store)
 if(any)
   set(store_bytes 0)
 endif()
-# {first pin, last, shortest pulse, longest, µs per ms}, as policy::PinLimit has them.
+# {first pin, last, shortest pulse, longest, µs per ms}: the fields of policy::PinLimit.
 string(JSON count LENGTH "${profile}" outputs)
 math(EXPR last "${count} - 1")
 set(board_outputs "")
@@ -27,7 +27,7 @@ foreach(i RANGE ${last})
   endif()
   string(APPEND board_outputs "{${first},${final},${shortest},${longest},${rise}},")
 endforeach()
-# {first pin, last}, as policy::PinRange has them.
+# {first pin, last}: the fields of policy::PinRange.
 string(JSON count LENGTH "${profile}" inputs)
 math(EXPR last "${count} - 1")
 set(board_inputs "")
@@ -36,7 +36,7 @@ foreach(i RANGE ${last})
   string(JSON final GET "${profile}" inputs ${i} pins 1)
   string(APPEND board_inputs "{${first},${final}},")
 endforeach()
-# … of which there may be none.
+# The same for those that may be empty.
 foreach(kind analog enables panels)
   string(JSON ${kind}_rows ERROR_VARIABLE any LENGTH "${profile}" ${kind})
   if(any)
@@ -51,7 +51,7 @@ foreach(kind analog enables panels)
     math(EXPR i "${i} + 1")
   endwhile()
 endforeach()
-# The host has what any board has.
+# The host has every part that any board has.
 if(panels_rows EQUAL 0 AND NOT CMAKE_CROSSCOMPILING)
   set(panels_rows 1)
   set(board_panels "{0,65535},")
@@ -67,7 +67,7 @@ if(any AND CMAKE_CROSSCOMPILING)
   set(board_speaker 0)
 endif()
 set(panels ${panels_rows})
-# What portable code asks of any board (boards/features.hpp); and what boards, and who joins all, ask of this one.
+# runtime_definitions are for portable code (boards/features.hpp); board_definitions for the board's code and for main.cpp.
 set(runtime_definitions ROBOSYNC_LIGHTS=${board_lights} ROBOSYNC_SPEAKER=${board_speaker})
 foreach(feature I2C_BUSES SERIAL_LINES PANELS)
   set(has 0)

@@ -23,7 +23,7 @@ Keeper::Program Keeper::running_program() const {
 
 void Keeper::activated(const link::Activate& how) {
   running_ = running_program();
-  if (given_up_ == running_.hash) given_up_ = {};  // it has begun again, and may stand it now
+  if (given_up_ == running_.hash) given_up_ = {};  // it runs again, and may pass this time
   failed_ = false;
   trial_ends_ = kernel_.now() + (how.trial_ms != 0 ? kernel::milliseconds(how.trial_ms) : kTrial);
   goes_back_ = how.goes_back != 0;
@@ -48,8 +48,8 @@ void Keeper::host_sends() {
   doing_ = Doing::nothing;
 }
 
-// Sensors are about to measure, on the bus from which the store is still read if the host is very quick: it takes some
-// milliseconds.
+// Sensors are about to be measured. If the host was very quick, the store is still being read over the same bus: wait for
+// that, a few milliseconds.
 void Keeper::host_activates(bool fresh) {
   while (opens())
     if (!work()) kernel_.sleep_until(due_);
@@ -65,7 +65,7 @@ void Keeper::roll_back(const link::ProgramHash& hash) {
   read(trial ? Doing::giving_up_trial : Doing::rolling_back);
 }
 
-// The running program's image stays where it is as long as it runs.
+// The store reads the running program's image in place: it does not move while the program runs.
 void Keeper::write_running() {
   doing_ = Doing::nothing;
   store_.give_up();
@@ -118,8 +118,8 @@ bool Keeper::work() {
   return judge_trial() || look_at_numbers() || start_after_all();
 }
 
-// Nobody who is to be on time, the safety thread above all, shall find the processor standing still: a piece that lets
-// it stand begins where no thread is due before it is over. What is left of the tick that has begun does not count.
+// No thread with a deadline, above all the safety thread, may find the processor stalled: a piece that stalls it starts
+// only if no thread is due before it ends. The rest of the current tick does not count.
 bool Keeper::waits_for_a_gap() {
   if (!stalls_) return false;
   if (kernel_.ticks_to_next_work() <= boards::Store::kStall) {
@@ -150,26 +150,26 @@ void Keeper::opened() {
   if (store_.kept().bytes != 0 && !host_has_the_room) read(Doing::starting_kept);
 }
 
-// A host that has gone away in the midst of an upload leaves no robot without a program.
+// A host that disappears during an upload must not leave the robot without a program.
 bool Keeper::start_after_all() {
   if (doing_ != Doing::nothing || running_.bytes != 0 || store_.kept().bytes == 0) return false;
   if (const kernel::Time at = heard_ + kSilence; kernel_.now() < at) {
     due_ = at;
     return false;
   }
-  heard_ = kernel_.now();  // if it is not whole, not at once again
+  heard_ = kernel_.now();  // if it is damaged, wait before the next attempt
   read(Doing::starting_kept);
   return true;
 }
 
-// True when there is something to write.
+// True if there are numbers to write.
 bool Keeper::look_at_numbers() {
   if (doing_ != Doing::nothing || !store_.there() || running_.bytes == 0) return false;
   const kernel::Time now = kernel_.now();
   if (now >= next_look_) {
     next_look_ = now + kLook;
     numbers_.learn(runtime_);
-    if (numbers_.all().empty()) next_look_ = kernel::kForever;  // nor will it ever have any
+    if (numbers_.all().empty()) next_look_ = kernel::kForever;  // it will never have any
     if (!std::ranges::equal(numbers_.all(), number_store_.numbers())) {
       number_store_.write(numbers_.all());
       doing_ = Doing::writing_numbers;
@@ -205,7 +205,7 @@ bool Keeper::fails_trial() const {
   return fault_ || (trips_count_ && runtime_.has_tripped());
 }
 
-// Without a program to go back to it runs on, and is not kept.
+// If there is no program to go back to, it keeps running, but is not kept.
 bool Keeper::give_up_trial() {
   fault_ = false;
   trips_count_ = false;
@@ -222,7 +222,7 @@ void Keeper::go_back() {
   if (store_.kept().bytes != 0) read(Doing::giving_up_trial);
 }
 
-// True when there is something to do because it is over.
+// True if the trial is over and leaves something to do.
 bool Keeper::judge_trial() {
   if (!on_trial() || doing_ != Doing::nothing) return false;
   if (!goes_back_ && store_.written() != running_) return false;

@@ -1,10 +1,10 @@
-// Decides with which program the robot starts after a reset, and brings it and its KEPT numbers back.
+// Decides which program the robot starts with after a reset, and restores that program and its KEPT numbers.
 //
-// A program that the host has uploaded is on trial: it is written into the store meanwhile, and kept when it has run
-// for kTrial, or as long as the host says, without a fault and without a SAFETY rule that tripped, unless one of the program
-// before did so, too. Else the kept program comes back at once; a reset before the end brings it back by itself. KEPT
-// numbers are written down once a second when they have changed; a program that comes begins with those of the one before. All
-// of it in pieces of one transfer, by the link thread, between the host's requests; who uploads comes first.
+// A program that the host uploads is on trial while it is written into the store. It is kept once it has run for kTrial, or for
+// as long as the host says, without a fault and without a tripped SAFETY rule. A tripped rule counts only if a program ran
+// before in which none had tripped. If the trial fails, the kept program comes back immediately; a reset before the end of the
+// trial also brings it back. KEPT numbers are saved once a second if they have changed; a new program begins with those of the
+// one before. The link thread does all of this between the host's requests, one transfer at a time; an upload takes precedence.
 #pragma once
 
 #include <atomic>
@@ -25,16 +25,15 @@ namespace robosync::update {
 class Keeper {
 public:
   static constexpr kernel::Duration kTrial = kernel::milliseconds(5000);
-  static constexpr kernel::Duration kLook = kernel::milliseconds(1000);  // at the numbers
+  static constexpr kernel::Duration kLook = kernel::milliseconds(1000);  // between looks at numbers
   static constexpr kernel::Duration kTripSeen =
       kernel::milliseconds(50);  // in a trial, at the latest
-  // Where no program runs and no host has sent anything for so long, the kept one begins.
+  // When no program runs and the host has sent nothing for this long, the kept one starts.
   static constexpr kernel::Duration kSilence = kernel::milliseconds(3000);
-  // Between two parts of an erasing, while each of which the processor may stand still: so much for all others, at least.
+  // Between two parts of an erase, each of which may stall the processor: everything else gets at least this much time.
   static constexpr kernel::Duration kRest = kernel::milliseconds(10);
 
-  // A transfer to `receiver` that has not come to its end is given up when a program is read from the store:
-  // both need the room.
+  // An unfinished transfer to `receiver` is dropped when a program is read from the store: both need the room.
   Keeper(kernel::Kernel& kernel, Runtime& runtime, link::Receiver& receiver, boards::Store* store)
       : kernel_(kernel),
         runtime_(runtime),
@@ -42,32 +41,32 @@ public:
         store_(store),
         number_store_(store) {}
 
-  // All but fault() by the link thread.
-  // Once, first of all. `failed`: the board has started because it had hung or faulted. Then nothing moves by itself:
-  // the kept program begins as if a person had said stop.
+  // Only the link thread calls these, except fault().
+  // Called once, before the others. `failed`: the board restarted because it had hung or faulted. Nothing moves then:
+  // the kept program starts as if a person had said stop.
   void boot(bool failed);
-  void activated(const link::Activate& how);  // a program of the host runs
-  void ends();                                // the running one is about to
-  void host_sends();                          // an image is coming into the room
-  // … and is about to run; `fresh`: its KEPT numbers begin as it says.
+  void activated(const link::Activate& how);  // the host's program now runs
+  void ends();                                // the running program is about to end
+  void host_sends();                          // the host is sending an image into the room
+  // The host's image is about to run. `fresh`: its KEPT numbers begin with the program's initial values.
   void host_activates(bool fresh);
-  // A person's wish: back to the program of that name. When it is not the one before, nothing happens: so asking
-  // twice does no more than asking once.
+  // A person wants the program of that name back. If that is not the one before, nothing happens, so asking twice
+  // does no more than asking once.
   void roll_back(const link::ProgramHash& hash);
-  void fault() { fault_ = true; }  // of a thread of the running program  [any]
+  void fault() { fault_ = true; }  // a thread of the running program faulted  [any]
 
-  // The next piece. False when there is none before due(), or fault().
+  // Does the next piece. False when there is none before due(), or fault().
   bool work();
   kernel::Time due() const { return due_; }
 
-  kernel::Time heard() const { return heard_; }  // when the host sent something of an image last
+  kernel::Time heard() const { return heard_; }  // when the host last sent part of an image
 
   void fill(link::Kept& answer) const;
 
 private:
   using Program = ProgramStore::Program;
-  // What is being done with the store. While it is read, no program runs: where the one that is wanted is not whole,
-  // the other one is.
+  // What is being done with the store. No program runs while one is read. If the wanted one is damaged, the other
+  // one is read.
   enum class Doing : std::uint8_t {
     nothing,
     opening,
@@ -114,17 +113,17 @@ private:
   Doing doing_ = Doing::nothing;
   Program running_{};
   kernel::Time trial_ends_ = 0;
-  bool goes_back_ = false;    // when the trial is over, however well it went
+  bool goes_back_ = false;    // after the trial, however well it went
   bool trips_count_ = false;  // a SAFETY rule that trips ends the trial
   kernel::Time due_ = kernel::kForever;
   kernel::Time heard_ = 0;        // from the host
-  link::ProgramHash given_up_{};  // the last program that did not stand its trial
+  link::ProgramHash given_up_{};  // the last program that failed its trial
   std::atomic<bool> fault_ = false;
-  bool stalls_ = false;  // the next piece does
+  bool stalls_ = false;  // the next piece stalls the processor
 
   KeptNumbers numbers_;
   kernel::Time next_look_ = 0;
-  bool failed_ = false;  // … and no program has begun since
+  bool failed_ = false;  // see boot(); until a program has started
 };
 
 }  // namespace robosync::update

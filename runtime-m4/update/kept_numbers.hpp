@@ -1,4 +1,4 @@
-// The KEPT numbers that the board knows: those of the running program first, then those of programs before it.
+// The KEPT numbers that the board knows: those of the running program first, then those of earlier programs.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ public:
     std::copy_n(numbers.begin(), count_, numbers_.begin());
   }
 
-  // Those of the running program as they are now. Of other programs stay as many as there is room for.
+  // Takes the running program's current numbers. Those of other programs stay as far as there is room.
   void learn(const Runtime& runtime) {
     std::array<layers::KeptNumber, vm::kMaxKept> learnt{};
     std::size_t count = runtime.fill_kept(learnt);

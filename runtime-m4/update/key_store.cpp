@@ -20,7 +20,7 @@ void KeyStore::open() {
   read(Task::head);
 }
 
-// Of a store without keys the heads alone are read: nobody waits long for that.
+// In a store without keys only the heads are read, which takes little time.
 void KeyStore::read(Task what) {
   task_ = what;
   const auto whole = std::as_writable_bytes(std::span(&next_, 1));

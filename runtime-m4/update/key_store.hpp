@@ -1,7 +1,8 @@
-// The owner's key in the board's store, with what boot ids are made of. It outlasts a loss of power at any byte of a write.
+// The owner's key in the board's store, and the data that boot ids are made from. It survives a loss of power at any byte of a
+// write.
 //
-// Two records, on pages of their own: the whole one with the higher number counts, and the other one is written. The number
-// counts up with each write, and a board with an owner writes one at each start; so the number also tells its starts apart.
+// There are two records, each on its own page. The valid one with the higher number counts; a write goes to the other. Each
+// write increments the number, and a board with an owner writes at each start, so the number also identifies the start.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +22,21 @@ public:
     std::uint32_t number;
     link::Pair owner;
     std::uint32_t paired;  // 1; 0: there is no owner
-    std::uint32_t crc32;   // of what stands before it
+    std::uint32_t crc32;   // of the fields before it
   };
   static_assert(sizeof(Record) == StoreLayout::kKeyBytes &&
                 sizeof(Record) % boards::Store::kPiece == 0);
 
   explicit KeyStore(boards::Store* store) : store_(store), transfer_(store) {}
 
-  // What may be asked for, one at a time.
-  void open();  // first of all: reads the records
+  // One request at a time.
+  void open();  // before the others: reads the records
   void write(bool paired, const link::Pair& owner);
 
-  Work work();  // the next piece of it
+  Work work();  // does the next piece of the request
 
-  bool there() const { return there_; }      // a store that answered when it was opened
-  bool written() const { return written_; }  // since it was opened, and the last write went through
+  bool there() const { return there_; }      // the store answered when it was opened
+  bool written() const { return written_; }  // since open(), and the last write succeeded
   const Record& record() const { return record_; }
 
 private:
@@ -52,7 +53,7 @@ private:
   Task task_ = Task::none;
   bool there_ = false;
   bool written_ = false;
-  std::uint32_t place_ = 0;  // of the record that is being read
+  std::uint32_t place_ = 0;  // of the record being read
   Record record_{};          // the one that counts; number 0: none
   Record next_{};            // being read or written
 };

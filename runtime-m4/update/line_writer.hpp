@@ -1,4 +1,4 @@
-// One frame on its way to the line, which takes as many bytes at a time as it likes.
+// One frame on its way to the line, which may take only a few bytes at a time.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class LineWriter {
 public:
   explicit LineWriter(boards::Board& board) : board_(board) {}
 
-  // True when the last frame is written, and the next may be sent. Never waits.
+  // True when the last frame is written and the next may be sent. Never waits.
   [[nodiscard]] bool ready() {
     if (begin_ < end_)
       begin_ += board_.link_write(std::span(frame_).subspan(begin_, end_ - begin_));

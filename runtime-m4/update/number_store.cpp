@@ -46,7 +46,7 @@ Work NumberStore::work() {
   const Task task = task_;
   task_ = Task::none;
   if (!transfer_.answered()) {
-    // Of flash: a cut of the power has spoiled the place. The next write goes to the one behind it.
+    // In flash: a power cut has spoiled the place. The next write goes to the one after it.
     if (task == Task::write) ++skipped_;
     return Work::ended;
   }
@@ -75,7 +75,7 @@ bool NumberStore::whole() const {
          next_.number == best_.number && next_.crc32 == vm::crc32(before_crc(next_));
 }
 
-// Otherwise the next older one: the power went while this one was written.
+// If it is damaged, try the next older one: the power was cut while this one was written.
 void NumberStore::look_at_body() {
   if (whole()) {
     record_ = next_;

@@ -1,5 +1,5 @@
-// The KEPT numbers in the board's store: a ring of records, each whole in itself, of which the newest whole one counts.
-// They are written one after the other, so that no page wears out, and a cut of the power leaves the one before.
+// The KEPT numbers in the board's store: a ring of self-contained records, of which the newest valid one counts.
+// Writes go round the ring, so that no page wears out, and a power cut leaves the record before.
 #pragma once
 
 #include <array>
@@ -21,20 +21,20 @@ public:
     std::uint32_t number;  // counts up
     std::uint32_t count;   // of the entries
     std::array<layers::KeptNumber, vm::kMaxKept> entries;
-    std::uint32_t crc32;  // of what stands before it
+    std::uint32_t crc32;  // of the fields before it
   };
   static_assert(sizeof(Record) == StoreLayout::kNumbersBytes &&
                 sizeof(Record) % boards::Store::kPiece == 0);
 
   explicit NumberStore(boards::Store* store) : store_(store), transfer_(store) {}
 
-  // What may be asked for, one at a time.
-  void open();  // first of all: reads the newest
+  // One request at a time.
+  void open();  // before the others: reads the newest record
   void write(std::span<const layers::KeptNumber> numbers);
 
-  Work work();  // the next piece of it
+  Work work();  // does the next piece of the request
 
-  // What stands in the store.
+  // The numbers in the store.
   std::span<const layers::KeptNumber> numbers() const {
     return std::span(record_.entries).first(record_.count);
   }
@@ -56,13 +56,13 @@ private:
   StoreTransfer transfer_;
   Task task_ = Task::none;
   Record record_{};            // the one that counts; number 0: none
-  std::uint32_t skipped_ = 0;  // numbers behind it whose places could not be written
+  std::uint32_t skipped_ = 0;  // record numbers after it whose places could not be written
   Record next_{};              // being read or written
   Head head_{};                // being read
-  std::uint32_t place_ = 0;    // … of which place
-  Head best_{};                // the newest head that was seen
+  std::uint32_t place_ = 0;    // of head_
+  Head best_{};                // the newest head found so far
   std::uint32_t best_place_ = 0;
-  std::uint32_t below_ = 0;  // newer ones are not whole
+  std::uint32_t below_ = 0;  // records from this number on are damaged
 };
 
 }  // namespace robosync::update

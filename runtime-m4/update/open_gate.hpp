@@ -1,5 +1,5 @@
-// In place of order_gate.hpp, where the firmware cannot verify signatures (ROBOSYNC_AUTHENTICATION is off): whoever has the line
-// gives the robot orders.
+// Replaces order_gate.hpp in firmware that cannot verify signatures (ROBOSYNC_AUTHENTICATION is off): any host on the line gives
+// the robot orders.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ public:
   kernel::Time due() const { return kernel::kForever; }
 
 private:
-  bool signed_ = false;  // … was the last request
+  bool signed_ = false;  // the last request was
 };
 
 }  // namespace robosync::update

@@ -1,4 +1,4 @@
-// See order_gate.hpp. What is cheap to refuse is refused before a signature is verified, which takes millions of instructions.
+// See order_gate.hpp. Cheap checks come before the signature's: verifying one takes millions of instructions.
 #include "runtime-m4/update/order_gate.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ bool OrderGate::work() {
       return true;
     case Work::waits:
     case Work::
-        rests:  // of flash that stalls, where no board has owners yet: it would have to wait for a gap, as the keeper does
+        rests:  // only flash that stalls; no such board has owners yet. It would have to wait for a gap, as the keeper does
       due_ = kernel_.now() + kernel::kTick;
       return false;
     case Work::ended:
@@ -49,7 +49,7 @@ void OrderGate::write(bool paired, const link::Pair& owner) {
   busy_ = true;
 }
 
-// The record's number is another one for each start, and who does not know the seed cannot tell the id of the next one.
+// The record's number differs at each start, and without the seed nobody can predict the next start's boot id.
 void OrderGate::written() {
   if (!store_.written()) return;
   std::array<std::byte, sizeof(link::Pair::seed) + sizeof(KeyStore::Record::number)> bytes{};
@@ -118,7 +118,7 @@ bool OrderGate::grant(link::Frame& begin) {
   return true;
 }
 
-// A host says `begin` again when the line has lost something.
+// A host repeats `begin` when the line has lost something.
 bool OrderGate::goes_on(const link::Frame& begin) const {
   const auto granted = std::span(granted_.begin).first(granted_.begin_bytes);
   return begin.type == MessageType::begin && granted_.open && kernel_.now() < granted_.until &&

@@ -1,8 +1,8 @@
-// Who may give the robot orders. Without an owner whoever has the line does; with one, an order counts that the owner has
-// signed (link/order.hpp), and each counts once. `stop` does not come here: it is for everybody.
+// Who may give the robot orders. Without an owner, any host on the line may. With an owner, only orders that the owner has
+// signed count (link/order.hpp), each of them once. `stop` is not an order: everybody may send it.
 //
-// An upload is ordered by `begin`, which names the image by the hash of its bytes: what follows needs no signature, since
-// nothing else can be activated than an image of that hash, once, within kGrant and before any other order or a stop.
+// `begin` orders an upload and names the image by the hash of its bytes. The frames after it need no signature: only an image
+// with that hash can be activated, once, within kGrant and before any other order or a stop.
 #pragma once
 
 #include <array>
@@ -19,26 +19,26 @@ namespace robosync::update {
 
 class OrderGate {
 public:
-  // A board that was switched on, not reset, takes a key for so long: who can do that is beside it.
+  // A board that was switched on, not reset, accepts a key for this long: only a person next to it can switch it on.
   static constexpr kernel::Duration kWindow = kernel::milliseconds(60'000);
   static constexpr kernel::Duration kGrant = kernel::milliseconds(300'000);
-  // After a bad signature none is looked at for so long; after each further one for twice as long, up to kMostPause.
+  // After a bad signature no other is verified for this long. The pause doubles with each further one, up to kMostPause.
   static constexpr kernel::Duration kPause = kernel::milliseconds(250);
   static constexpr kernel::Duration kMostPause = kernel::milliseconds(8'000);
-  // The number of an order is at most so far ahead, so that none ends the counting.
+  // An order's number may be at most this far ahead, so that no order can exhaust the counter.
   static constexpr std::uint64_t kMostAhead = 1'000'000;
 
   OrderGate(kernel::Kernel& kernel, boards::Store* store) : kernel_(kernel), store_(store) {}
 
-  // All by the link thread. First of all, before anybody measures or reads programs from the store: it reads who the owner
-  // is, and takes some milliseconds.
+  // Only the link thread calls these. open() comes first, before sensors are measured or programs are read from the store:
+  // it reads who the owner is, which takes a few milliseconds.
   void open(bool switched_on);
 
-  // False when the frame is an order that does not count; fill() then says why. A signed order becomes the order itself.
+  // False when the frame is an order that does not count; fill() then says why. A signed order is replaced by the order in it.
   [[nodiscard]] bool takes(link::Frame& frame);
-  // May the image that was received be activated so? To be asked once for each.
+  // May the received image be activated in this way? Call it once for each image.
   [[nodiscard]] bool grants(std::span<const std::byte> image, const link::Activate& how);
-  // What was signed before this does not count any more: a stop.
+  // After a stop: orders that were signed before it no longer count.
   void outdate() {
     ++next_;
     granted_.open = false;
@@ -47,12 +47,11 @@ public:
   void pair(const link::Pair& owner);
   void unpair();
   link::Pairing pairing() const;
-  void fill(link::Authority& answer)
-      const;  // with the reason of what was refused last, if it was the last request
+  void fill(link::Authority& answer) const;  // with the reason, if the last request was refused
 
-  // A record is being written; nobody else uses the store meanwhile.
+  // A record is being read or written; nothing else may use the store meanwhile.
   bool busy() const { return busy_; }
-  bool work();  // the next piece; false when there is none before due()
+  bool work();  // does the next piece; false when there is none before due()
   kernel::Time due() const { return due_; }
 
 private:
@@ -61,7 +60,7 @@ private:
     bool open = false;
     kernel::Time until = 0;
     link::Grant what{};
-    std::array<std::byte, 64> begin{};  // what the order was, without the grant
+    std::array<std::byte, 64> begin{};  // the order's payload, without the grant
     std::size_t begin_bytes = 0;
   };
 
@@ -83,7 +82,7 @@ private:
   link::BootId boot_{};
   std::uint64_t next_ = 0;  // the smallest number of an order that counts
   link::Denial denial_ = link::Denial::none;
-  unsigned bad_ = 0;  // signatures, one after the other
+  unsigned bad_ = 0;  // consecutive bad signatures
   kernel::Time looks_again_ = 0;
   Granted granted_;
 };

@@ -83,7 +83,7 @@ Work ProgramStore::work() {
   return task_ == Task::none ? Work::ended : Work::some;
 }
 
-// A record is believed that could have been written: what is damaged otherwise is not there.
+// Accepts only a record that could have been written; any other counts as absent.
 void ProgramStore::look_at_record() {
   const auto bytes = std::as_bytes(std::span(&next_, 1)).first(offsetof(Record, crc32));
   const bool whole = next_.magic == Record::kMagic && vm::crc32(bytes) == next_.crc32 &&

@@ -1,10 +1,10 @@
-// The programs that outlast a reset, in the board's store: the kept one, with which the robot starts, and the one
+// The programs in the board's store, which survive a reset: the kept one, which the robot starts with, and the one
 // that was kept before it.
 //
-// Each stands in a slot of its own. Which is which says a record, of which there are two, on pages of their own: the
-// whole one with the higher number counts. An image is written into the slot of the program before, and after it
-// the older record; so a cut of the power at any byte leaves either the kept program of before or the new one.
-// That an image is whole is seen when it is read: its own CRC and name, and the verifier.
+// Each has its own slot. A record says which slot is which. There are two records, each on its own page, and the
+// valid one with the higher number counts. An image is written into the slot of the previous program, and then the
+// older record is overwritten, so a power cut at any byte leaves either the old kept program or the new one.
+// An image is checked when it is read: its own CRC, its name and the verifier.
 #pragma once
 
 #include <array>
@@ -26,27 +26,27 @@ public:
     bool operator==(const Program&) const = default;
   };
 
-  // nullptr: as one that does not answer.
+  // nullptr: treated as a store that does not answer.
   explicit ProgramStore(boards::Store* store) : store_(store), transfer_(store) {}
 
-  // What may be asked for, one at a time; asking for another gives up the one before.
-  bool open();  // first of all: reads the records; false without a store
+  // One request at a time; a new one gives up the one before.
+  bool open();  // before the others: reads the records; false without a store
   void read_kept(std::span<std::byte> room);  // into the beginning of `room`
   void read_previous(std::span<std::byte> room);
-  // In place of the previous one, which the record names no more before that: what has not stood its trial is never called it.
+  // Overwrites the previous program. Its entry in the record is removed first, so that a program on trial never counts as it.
   void write(std::span<const std::byte> image, Program what);
-  void keep_written();  // from now on that is the kept one
-  void swap();          // the previous is the kept one, and the other way round
+  void keep_written();  // the written program becomes the kept one
+  void swap();          // exchanges the previous and the kept one
   void give_up() { transfer_.give_up(); }
 
-  Work work();  // the next piece of it
+  Work work();  // does the next piece of the request
 
-  bool there() const { return there_; }  // a store that answers
+  bool there() const { return there_; }  // the store answers
   Program kept() const { return record_.kept; }
   Program previous() const { return record_.previous; }
-  Program written() const { return written_; }  // by write(), whole, and not kept yet
+  Program written() const { return written_; }  // completely, by write(), and not kept yet
   std::uint32_t most_bytes() const;             // of an image
-  // What was read. Fewer bytes than the program has: there was no room for it.
+  // The bytes that were read. If they are fewer than the program has, the room was too small.
   std::span<const std::byte> image() const { return room_; }
 
 private:
@@ -59,7 +59,7 @@ private:
     Program kept, previous;
     std::uint32_t slot;  // of the kept one: 0 or 1
     std::array<std::uint32_t, 2> reserved;
-    std::uint32_t crc32;  // of what stands before it
+    std::uint32_t crc32;  // of the fields before it
   };
   static_assert(sizeof(Record) % boards::Store::kPiece == 0);
 
@@ -76,7 +76,7 @@ private:
   Record record_{};  // the one that counts; number 0: none
   Program written_{};
 
-  Program writes_{};  // … by it, from here:
+  Program writes_{};  // being written, from from_
   std::span<const std::byte> from_;
 
   Task task_ = Task::none;

@@ -1,4 +1,4 @@
-// May assume nothing of what comes from the line. Promises that a request has one reply, that no
+// Assumes nothing about the bytes from the line. Guarantees that a request has at most one reply, that no
 // request touches the running image, and that each piece of work() is bounded: one frame's worth of
 // bytes, and in activate() one verification.
 #include "runtime-m4/update/server.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using link::MessageType;
 
-// Offset, then as much of `image` from there as fits.
+// The offset, then as many bytes of `image` from there as fit.
 std::size_t fill_image_data(std::span<const std::byte> image, std::uint32_t offset,
                             std::span<std::byte, link::kMaxPayload> payload) {
   const link::ImageData head{offset};
@@ -69,14 +69,14 @@ bool Server::work() {
   return said || (gate_.busy() ? gate_.work() : keeper_.work());
 }
 
-// Decodes until a request was handled. What follows it waits until its reply is written.
+// Decodes until one request is handled. The bytes after it wait until its reply is written.
 bool Server::read_line() {
   if (input_begin_ == input_end_) {
     const std::uint32_t seen = stops_seen_.load(std::memory_order_relaxed);
     input_begin_ = 0;
     input_end_ = static_cast<std::uint8_t>(board_.link_read(input_));
     if (input_end_ == 0) {
-      stops_read_ = seen;  // some of them may have found no room in the line
+      stops_read_ = seen;  // some may have found no room in the receive buffer
       return false;
     }
   }
@@ -145,13 +145,13 @@ void Server::answer(const link::Frame& frame) {
     case MessageType::roll_back:
       return roll_back(frame);
     default:
-      return;  // a message to the host, or of a later protocol
+      return;  // a message meant for a host, or from a later protocol
   }
 }
 
-// A host of another protocol says it otherwise, and has no session; from the answer it knows why.
+// A host with another protocol version sends a different hello and gets no session; the reply tells it why.
 void Server::hello(const link::Frame& frame) {
-  ring_.listen(false);  // a new host; it says itself what it wants to hear
+  ring_.listen(false);  // a new host says itself what it wants to hear
   link::Hello host{};
   if (link::read_payload(frame.payload, host)) session_.open(host, in_transfer(), kernel_.now());
   link::HelloReply answer{};
@@ -178,13 +178,14 @@ void Server::hello(const link::Frame& frame) {
   send(MessageType::hello_reply, frame.sequence, link::wire_bytes(answer));
 }
 
-// A host that has gone away is not waited for.
+// A host that has gone away does not keep the line.
 bool Server::in_transfer() const {
   const link::TransferState state = receiver_.status().state;
   return state != link::TransferState::idle && kernel_.now() < keeper_.heard() + Keeper::kSilence;
 }
 
-// Not before the board has done so at the sight of the frame; but another host may number its frames otherwise.
+// Usually the line's interrupt has stopped the robot already. It detects only kStopSequence, but another host may number its
+// frames differently.
 void Server::stop(std::uint8_t sequence) {
   if (sequence == link::kStopSequence) ++stops_read_;
   gate_.outdate();
@@ -192,7 +193,7 @@ void Server::stop(std::uint8_t sequence) {
   status(sequence);
 }
 
-// One that was sent before the last stop must not undo it. It has no reply, so that a host that means it asks again.
+// A resume that was sent before the last stop must not undo it. It gets no reply, so a host that means it asks again.
 void Server::resume(const link::Frame& frame) {
   link::Resume request{};
   if (!link::read_payload(frame.payload, request)) {
@@ -203,7 +204,7 @@ void Server::resume(const link::Frame& frame) {
   status(frame.sequence);
 }
 
-// No stop comes between the look and the word.
+// With interrupts locked, no stop can come between the check and the resume.
 bool Server::resume_unless_stopped() {
   const auto lock = kernel_.lock_interrupts();
   if (stops_read_ != stops_seen_.load(std::memory_order_relaxed)) return false;
@@ -239,14 +240,14 @@ void Server::data(const link::Frame& frame) {
                                                            : receiver_.pieces(head.offset, bytes));
 }
 
-// While the rest is on its way the board works out the name of what it has.
+// The board computes the image's name from the bytes that it has, while the rest is on its way.
 void Server::received(std::uint8_t sequence, link::TransferStatus answer) {
   send(MessageType::transfer_status, sequence, link::wire_bytes(answer));
   if (answer.next_offset == 0) identity_ = {};
   identity_.follow(receiver_.bytes());
 }
 
-// The reply may get lost and the host ask again: then the answer is the same, and nothing is done
+// If the reply gets lost, the host asks again: it then gets the same answer, and nothing is done
 // twice.
 void Server::activate(const link::Frame& frame) {
   link::Activate request{};
@@ -256,7 +257,7 @@ void Server::activate(const link::Frame& frame) {
   }
   const bool whole = receiver_.complete() && receiver_.hash() == request.hash;
   if (whole && !gate_.grants(receiver_.bytes(), request)) {
-    receiver_.reset();  // it is not what the owner has signed: all of it again
+    receiver_.reset();  // the owner has not signed this image: the host must send it again
   } else if (whole) {
     keeper_.host_activates(request.fresh != 0);
     last_result_ = activate_received();
@@ -318,7 +319,7 @@ void Server::clear(const link::Frame& frame) {
   if (runtime_.running() && vm::stated_name(running_image()) == request.hash) {
     keeper_.ends();
     runtime_.clear();
-    receiver_.reset();  // the room is another
+    receiver_.reset();  // the room has moved
   }
   status(frame.sequence);
 }
@@ -408,7 +409,7 @@ void Server::report(const link::Fault& fault) {
   kernel_.signal(thread_, kNews);
 }
 
-// Before there was one, the first place says so.
+// Before the first fault, the first entry is still all zero, which means none.
 void Server::last_fault(std::uint8_t sequence) {
   const link::Fault& last = faults_[fault_count_ - (fault_count_ == 0 ? 0U : 1U)];
   send(MessageType::last_fault, sequence, link::wire_bytes(last));

@@ -1,9 +1,9 @@
-// The board's end of the link: answers the host, receives programs and has them activated, sends
-// trace events, log lines and fault records. One thread of category `system`, the lowest rank, so
-// that whatever it does, the running program and the safety thread come first.
+// The board's end of the link: answers the host, receives programs, has the runtime activate them, and
+// sends trace events, log lines and fault records. It is one thread of category `system`, the lowest
+// rank, so the running program and the safety thread always come first.
 //
-// A program is received into memory that is not in use and switched to only when it is whole,
-// verified and accepted by the runtime; until then, and if anything fails, the old one runs on.
+// A program is received into unused memory. The runtime switches to it only when it is complete,
+// verified and accepted; until then, and if anything fails, the old program keeps running.
 // The server never waits for the line: a reply stays until it is written, and further requests stay
 // in the UART's receive buffer meanwhile; events that find the ring full are dropped and counted.
 // Protocol: docs/link.md.
@@ -49,24 +49,24 @@ public:
         gate_(kernel, board.store()),
         keeper_(kernel, runtime, receiver_, board.store()) {}
 
-  // Creates the link thread and starts the line. Once, before Kernel::run(). False when the kernel has
-  // no place.
+  // Creates the link thread and starts the line. Call it once, before Kernel::run(). False if the kernel has
+  // no room.
   [[nodiscard]] bool start();
 
-  // A thread was stopped. The first faults are kept until a host listens; later ones are only
-  // counted, since the first is the cause.  [any]
+  // A thread was stopped. The first faults are kept until a host listens; later ones are only counted
+  // (Runtime::fill_status()), since the first is the cause.  [any]
   void report(const link::Fault& fault);
 
 private:
-  // What the link thread waits for: the line, and something to tell. Nothing else wakes it.
+  // The link thread waits for the line, and for something to report. Nothing else wakes it.
   static constexpr kernel::Events kLine = 1;
   static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
-  // It verifies and loads programs, and signatures where it can: then they need most.
+  // Verifying and loading programs needs the most, or verifying signatures, where the firmware does that.
   static constexpr std::size_t kStack = kAuthentication ? 6144 : 1856;
 
   void run();
-  bool work();  // one thing that is due; false when there is nothing, or the line does not take it
+  bool work();  // does one thing that is due; false if there is none, or the line is full
   bool read_line();
   bool send_unasked();
   bool send_next_thread();
@@ -114,15 +114,15 @@ private:
   std::uint8_t input_begin_ = 0;
   std::uint8_t input_end_ = 0;
   std::atomic<std::uint32_t> stops_seen_ = 0;  // by the line's interrupt
-  std::uint32_t stops_read_ = 0;               // … and of these, by the link thread
+  std::uint32_t stops_read_ = 0;               // of stops_seen_, by the link thread
   std::uint32_t bad_requests_ = 0;             // good frames with a payload of the wrong length
   std::uint8_t unasked_sequence_ = 0;          // of events, logs, faults
 
   LineSession session_;
   link::Receiver receiver_;
-  vm::Identity identity_;               // of what it has received
+  vm::Identity identity_;               // of the received image
   link::ActivateResult last_result_{};  // repeated when the host asks again
-  link::ProgramHash last_activated_{};  // … the program that it is about
+  link::ProgramHash last_activated_{};  // the program that last_result_ is about
   bool have_result_ = false;
   std::conditional_t<kAuthentication, OrderGate, OpenGate> gate_;
   Keeper keeper_;

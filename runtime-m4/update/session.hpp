@@ -1,5 +1,5 @@
-// Whose line it is. A host opens a session with hello, and what changes the robot names it; so what two hosts on one line send
-// never mixes. Another hello closes it, but not in the midst of a transfer, unless that is what its host wants.
+// Which host owns the line. A host opens a session with hello, and each request that changes the robot names the session, so
+// requests of two hosts on one line never mix. A hello of another host takes over, but during a transfer only if it says so.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ public:
     host_ = host;
   }
 
-  // Is the request of this session, or one that needs none?
+  // Does the request belong to this session, or need none?
   [[nodiscard]] bool admits(const link::Frame& frame) const {
     using link::MessageType;
     switch (frame.type) {
@@ -42,7 +42,7 @@ public:
   }
 
 private:
-  // A request that names its session does so first. A short one is left to who reads it.
+  // The session's number comes first in a request. If the payload is too short for it, its reader rejects it.
   template <typename Number>
   bool names(const link::Frame& frame, Number session) const {
     Number named{};

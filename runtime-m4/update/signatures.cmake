@@ -1,4 +1,4 @@
-# What signatures are verified with: libsodium on the host, on the board the few files of TinySSH that do Ed25519, which
+# The code that verifies signatures: libsodium on the host; on the board the few files of TinySSH that implement Ed25519, which
 # scripts/signatures gets from Debian's source package.
 if(NOT CMAKE_CROSSCOMPILING)
   find_package(PkgConfig REQUIRED)

@@ -1,5 +1,5 @@
-// Ed25519 and SHA-512 (RFC 8032), of which a board needs to verify and to hash only: it has no secret. On the board the code is
-// TinySSH's (signatures_tinyssh.cpp), on the host libsodium's.
+// Ed25519 and SHA-512 (RFC 8032). A board only verifies and hashes: it has no secret. On the board the code is TinySSH's
+// (signatures_tinyssh.cpp), on the host libsodium's.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace robosync::update {
 
-// Of at most so many bytes.
+// The longest text that is_signed() takes, in bytes.
 inline constexpr std::size_t kMaxSigned = link::kMaxOrderText;
 [[nodiscard]] bool is_signed(std::span<const std::byte> text, const link::Signature& signature,
                              const link::PublicKey& key);

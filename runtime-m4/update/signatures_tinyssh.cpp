@@ -1,5 +1,5 @@
-// See signatures.hpp: on the board, by what scripts/signatures has unpacked of Debian's source package of TinySSH, the smallest
-// code there for this. One verification takes 3.6 KB of stack, most of it for a table.
+// See signatures.hpp: the implementation on the board. It uses the code that scripts/signatures unpacks from Debian's source
+// package of TinySSH, the smallest there for this. One verification takes 3.6 KB of stack, most of it for a table.
 #include <algorithm>
 #include <array>
 
@@ -9,13 +9,13 @@ extern "C" {
 #include <crypto_hash_sha512.h>
 #include <crypto_sign_ed25519.h>
 
-// It would overwrite what it has worked with. Here all of that is public.
+// TinySSH's version wipes working memory. Everything in it is public here.
 void cleanup_(void* /*bytes*/, long long /*count*/) {}
 }
 
 namespace robosync::update {
 
-// TinySSH's is given signature and text in one piece, and may leave the text in the same place.
+// TinySSH's function takes signature and text in one buffer, and may write the text back into it.
 bool is_signed(std::span<const std::byte> text, const link::Signature& signature,
                const link::PublicKey& key) {
   std::array<unsigned char, sizeof(link::Signature) + kMaxSigned> bytes;

@@ -1,6 +1,7 @@
-// What stands where in a board's store: two records and two slots for programs (program_store.hpp), two records of the owner's
-// key (key_store.hpp), and a ring of records of KEPT numbers (number_store.hpp). Each begins on a page of its own, so that a cut
-// of the power spoils no other; but of flash, where it does not, a page of the ring holds as many records as go in.
+// The layout of a board's store: two records and two slots for programs (program_store.hpp), two records of the owner's key
+// (key_store.hpp), and a ring of records of KEPT numbers (number_store.hpp). Each begins on its own page, so that a power cut
+// damages no other. In flash, where a power cut does not damage the rest of the page, each page of the ring is filled with
+// records.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +14,13 @@ class StoreLayout {
 public:
   static constexpr std::uint32_t kRecords = 2;
   static constexpr std::uint32_t kSlots = 2;
-  // A store bears so many writes of a page. With each second a new number, 16 times a million seconds are half a year. Of
-  // flash, whose pages bear ten thousand, the ring is a third: some hundred records, and two months.
+  // Pages wear out. With one write a second, 16 pages of a million writes each last half a year. In flash, whose pages last
+  // ten thousand erases, the ring is a third of the store: at least 500 records, which last about two months.
   static constexpr std::uint32_t kRing = 16;
 
   static constexpr std::uint32_t kNumbersBytes = 144;  // of a record in the ring
   static constexpr std::uint32_t kKeys = 2;
-  static constexpr std::uint32_t kKeyBytes = 64;  // of a record
+  static constexpr std::uint32_t kKeyBytes = 64;  // of a key record
 
   constexpr explicit StoreLayout(const boards::Store& store)
       : page_(store.page()),
@@ -46,9 +47,9 @@ private:
   }
 
   std::uint32_t page_;
-  std::uint32_t numbers_;   // bytes of whole pages
-  std::uint32_t together_;  // records in them
-  std::uint32_t ring_;      // times numbers_
+  std::uint32_t numbers_;   // bytes of one part of the ring: whole pages
+  std::uint32_t together_;  // records in a part
+  std::uint32_t ring_;      // parts
   std::uint32_t first_number_, first_key_;
 };
 

@@ -1,4 +1,4 @@
-// A piece of the board's store on its way to or from memory, one transfer at a time.
+// Copies part of the board's store to or from memory, one small transfer at a time.
 #pragma once
 
 #include <algorithm>
@@ -13,22 +13,22 @@ namespace robosync::update {
 enum class Work : std::uint8_t {
   none,   // there is nothing to do
   some,   // a piece is done; there may be more
-  waits,  // as `some`, but it makes no sense before a millisecond is over
-  rests,  // as `some`, but it lets everybody else wait: Store::Outcome::goes_on
+  waits,  // as `some`, but the next attempt makes no sense for a millisecond
+  rests,  // as `some`, but the next piece makes everything else wait: Store::Outcome::goes_on
   ended   // the last piece is done
 };
 
 class StoreTransfer {
 public:
-  // Without a store (nullptr), it is as one that does not answer.
+  // nullptr: treated as a store that does not answer.
   explicit StoreTransfer(boards::Store* store) : store_(store) {}
 
-  // From or to the byte `at` of the store, on a boundary of Store::kPiece. What was under way is given up.
+  // From or to the byte `at` of the store, a multiple of Store::kPiece. A transfer in progress is given up.
   void read(std::uint32_t at, std::span<std::byte> to) { begin(at, to, {}); }
   void write(std::uint32_t at, std::span<const std::byte> from) { begin(at, {}, from); }
   void give_up() { busy_ = false; }
 
-  // The next piece.
+  // Does the next piece.
   Work work() {
     if (!busy_) return Work::none;
     if (store_ == nullptr) return end(false);
@@ -50,11 +50,11 @@ public:
     }
     return Work::some;
   }
-  // … all of it went through.
+  // The whole transfer succeeded. Valid after Work::ended.
   bool answered() const { return answered_; }
 
 private:
-  static constexpr unsigned kPatience = 20;  // transfers without an answer, a millisecond each
+  static constexpr unsigned kPatience = 20;  // attempts without an answer, a millisecond each
 
   void begin(std::uint32_t at, std::span<std::byte> to, std::span<const std::byte> from) {
     busy_ = true;

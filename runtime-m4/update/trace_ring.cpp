@@ -1,4 +1,4 @@
-// May assume one reader. Promises that a message is in the ring whole or not at all, and that the
+// Assumes one reader. Guarantees that a message is in the ring completely or not at all, and that the
 // kernel is locked only while its words are copied.
 #include "runtime-m4/update/trace_ring.hpp"
 
@@ -8,8 +8,8 @@
 namespace robosync::update {
 namespace {
 
-// The first word of a message: its type, and how many values or bytes it has. Of an event also
-// what it is about.
+// The first word of a message: its type, and how many values or bytes it has. For an event also
+// its subject.
 constexpr std::uint32_t head(link::MessageType type, std::size_t count, std::uint16_t subject = 0) {
   return static_cast<std::uint32_t>(type) | static_cast<std::uint32_t>(count) << 8 |
          std::uint32_t{subject} << 16;
@@ -18,7 +18,7 @@ constexpr std::size_t count_of(std::uint32_t head) {
   return head >> 8 & 0xFF;
 }
 
-// Calls put() with the words of an event, of which so many are values.
+// Calls put() with each word of an event, including its first `values` values.
 template <class Put>
 [[gnu::always_inline]] inline void each_word(const link::Event& event, std::size_t values,
                                              Put put) {
@@ -39,7 +39,7 @@ void TraceRing::listen(bool on) {
   set_listening(on);
 }
 
-// Under the lock. A message that has room comes now; one that has none is lost.
+// Call it with the kernel locked. True: the caller puts a message of this many words now. Otherwise it is lost.
 bool TraceRing::make_room(std::size_t words) {
   if (!listening()) return false;
   if (words > kWords - (put_ - taken_)) {

@@ -1,7 +1,7 @@
-// Messages to the host that nobody asked for (trace events, log lines), waiting for the line.
+// Unsolicited messages to the host (trace events, log lines), waiting for the line.
 //
-// Written by any thread, read by the link thread. A bounded ring: when the host does not read, what
-// is new is dropped and counted, and nobody ever waits. Nothing is kept while no host listens.
+// Any thread writes, the link thread reads. The ring is bounded: when the host does not read, new messages
+// are dropped and counted, and no writer ever waits. Nothing is stored while no host listens.
 #pragma once
 
 #include <array>
@@ -20,22 +20,22 @@ class TraceRing final : public EventSink {
 public:
   explicit TraceRing(kernel::Kernel& kernel) : EventSink(false), kernel_(kernel) {}
 
-  // From now on `news` of `reader` are signalled when a message comes into the empty ring: who has
-  // taken all of them waits for that. Before Kernel::run().
+  // From now on `reader` gets the events `news` when a message enters the empty ring. The reader waits for
+  // them once it has taken every message. Call it before Kernel::run().
   void wake(kernel::Thread& reader, kernel::Events news) {
     reader_ = &reader;
     news_ = news;
   }
 
-  // Starts or stops keeping messages. Stopping forgets what waits.  [any]
+  // Starts or stops storing messages. Stopping drops those in the ring.  [any]
   void listen(bool on);
 
   void emit(const link::Event& event) override;  // [any]
-  // One line of text without its end; cut at kMaxPayload.  [any]
+  // One line of text without its line end; cut at kMaxPayload.  [any]
   void log(std::string_view line);
 
-  // The oldest message: its type and, in `payload`, its bytes. Returns their number; 0 when none
-  // waits.  [link thread]
+  // Takes the oldest message: its type and, in `payload`, its bytes. Returns their number; 0 if the ring is
+  // empty.  [link thread]
   std::size_t take(link::MessageType& type, std::span<std::byte, link::kMaxPayload> payload);
 
   std::uint32_t lost() const { return lost_; }  // since start-up
@@ -52,8 +52,8 @@ private:
   void take_event(Word head, link::Event& event);
 
   kernel::Kernel& kernel_;
-  // Messages as they are found, in words: an event's numbers, which become bytes when the line is
-  // ready for them, or a line's bytes. The first word says which, and how many.
+  // Messages in words: an event's numbers, which are encoded as bytes only when the line is ready for
+  // them, or a line's bytes. The first word says which, and how many.
   std::array<Word, kWords> ring_{};
   // Words ever put and taken; they wrap around together with the ring.
   std::size_t put_ = 0;

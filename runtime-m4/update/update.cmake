@@ -1,7 +1,7 @@
 # The board's end of the link.
 #
-# Whether it can have an owner, whose orders are signed: by default where something outlasts a loss of power, which the owner's
-# key must. Without it the firmware is some 10 KB smaller.
+# ROBOSYNC_AUTHENTICATION lets a board have an owner, who signs orders. By default it is on if the board has a store, since the
+# owner's key must survive a loss of power. Without it the firmware is some 10 KB smaller.
 set(keeps_keys ON)
 if(store_bytes EQUAL 0)
   set(keeps_keys OFF)

@@ -1,8 +1,8 @@
-"""The robot's board in QEMU: boots the firmware, gives its serial line and its touch sensor.
+"""The robot's board in QEMU: boots the firmware and gives access to its serial line and its touch sensor.
 
-Used by scripts/robot, scripts/demo and tests/e2e. Which board it is says ROBOSYNC_BOARD in the environment; the
-preset with its firmware must have been built. Promises that QEMU ends with the `with` block or the process, and that
-what it leaves behind is deleted.
+Used by scripts/robot, scripts/demo and tests/e2e. ROBOSYNC_BOARD in the environment selects the board; the preset
+with its firmware must have been built. Guarantees that QEMU ends with the `with` block or the process, and that its
+temporary files are deleted.
 """
 
 import functools
@@ -21,32 +21,32 @@ ROOT = Path(__file__).resolve().parents[2]
 PRESETS = json.loads((ROOT / "CMakePresets.json").read_text("utf-8"))["configurePresets"]
 REFERENCE = next(preset for preset in PRESETS if preset["name"] == "m4")["cacheVariables"]["ROBOSYNC_BOARD"]
 NAME = os.environ.get("ROBOSYNC_BOARD", REFERENCE)
-# A twin stands in the folder of the board whose runtime it shares.
+# A twin is built in the folder of the board whose runtime it shares.
 OF = {twin: told["ROBOSYNC_BOARD"] for told in (preset.get("cacheVariables", {}) for preset in PRESETS)
       for twin in filter(None, told.get("ROBOSYNC_TWINS", "").split(";"))}
 BUILT = ROOT / "build" / (f"{OF[NAME]}/{NAME}" if NAME in OF else "m4" if NAME == REFERENCE else NAME)
 FIRMWARE = BUILT / "robosync.elf"
-# What is on its buses in QEMU, and the first QEMU that has the board.
+# The devices on its buses in QEMU.
 DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
-# Its store, as many bytes as its profile says, which stand in a file: an EEPROM, or a piece of the flash, from that address on.
-# QEMU has no file for the flash: it is read from there at the start, and saved at the end.
+# Its store, whose size is in its profile and whose content is in a file: an EEPROM, or part of the flash, from that address on.
+# QEMU cannot back the flash by a file: this loads it at the start, and saves it at the end.
 EEPROMS = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
 FLASHES = {"microbit-v2": 0x8_0000 - 221_184, "b-l475e-iot01a": 0x0808_0000, "nucleo-l476rg": 0x0808_0000}
 BLANK = b"\xff"
 HAVE_WATCHDOG = {REFERENCE}  # in QEMU
 SINCE = {"b-l475e-iot01a": (9, 2), "nucleo-l476rg": (9, 2), "microbit-v2": (9, 2)}
 UNPACKED = ROOT / "build/qemu/usr"  # by scripts/emulator
-# For whom scripts/emulator makes a QEMU of its own, and what else the machine is told: bytes of its memory, or how much may be
-# loaded into it.
+# The boards for which scripts/emulator makes a QEMU of their own, and further options of the machine: bytes of its memory, or how
+# much may be loaded into it.
 MADE = {"microbit-v2": ROOT / "build/qemu-microbit-v2"}
 MEMORY = {"microbit-v2": ["-global", "nrf51-soc.sram-size=131072", "-global", "nrf51-soc.flash-size=524288"],
           "b-l475e-iot01a": ["-m", "1M"], "nucleo-l476rg": ["-m", "1M"]}
-LOSES_INTERRUPT = {"microbit-v2"}  # of its UART, when a byte has to wait
+LOSES_INTERRUPT = {"microbit-v2"}  # its UART's, when a byte has to wait
 TOUCH = "/machine/peripheral/touch"  # the MAX34451 on the I2C bus, QMP path
 BOOT_SECONDS = 20  # on a busy machine
-# How virtual time passes: it counts instructions, so that a firmware that is held up by a busy host
-# does not miss its deadlines. While the firmware idles,
-REAL_TIME = "shift=5,sleep=on"  # 32 ns each (about 25 MHz): it follows the host's clock, without its jumps;
+# Virtual time counts instructions, so that the firmware does not miss deadlines because the host is busy. While the
+# firmware idles,
+REAL_TIME = "shift=5,sleep=on"  # 32 ns each (about 25 MHz): time follows the host's clock, without its jumps;
 FAST = "shift=4,sleep=off"  # 16 ns each (an STM32F401's 84 MHz): idle time is skipped.
 
 
@@ -58,7 +58,7 @@ class BoardError(RuntimeError):
 
 
 def told_by_build(what):
-    """Of what the board's board.cmake says for who emulates it."""
+    """One of the settings that the board's board.cmake makes for emulators."""
     file = BUILT / what
     if not file.is_file():
         raise BoardError(f"no {file}: run scripts/firmware {NAME} first")
@@ -66,18 +66,18 @@ def told_by_build(what):
 
 
 def machine():
-    """What QEMU calls the board, or one in whose place it may be."""
+    """QEMU's name of the board, or of the one that substitutes for it."""
     return told_by_build("machine")
 
 
 def lines_before(device):
-    """How QEMU is told that the serial line which comes next is the link's."""
+    """QEMU's options for the serial lines before the link's."""
     return ["-serial", device] * int(told_by_build("line"))
 
 
 @functools.cache
 def emulator():
-    """The installed QEMU when it has the board, else the one that scripts/emulator has unpacked or made."""
+    """The installed QEMU if it has the board, otherwise the one that scripts/emulator has unpacked or made."""
     installed = shutil.which("qemu-system-arm")
     if installed is None:
         raise BoardError("qemu-system-arm is not installed (Debian package qemu-system-arm)")
@@ -92,7 +92,7 @@ def emulator():
 
 
 def made(program):
-    """The one made of it for this board, if any."""
+    """The QEMU that was made from `program` for this board, if any."""
     own = MADE.get(NAME)
     if own is not None and not own.is_file():
         raise BoardError(f"{NAME} needs a QEMU of its own, which is not there: run scripts/emulator first")
@@ -100,7 +100,7 @@ def made(program):
 
 
 def qemu():
-    """How QEMU is started for that board."""
+    """The command that starts QEMU with that board."""
     return [*emulator(), "-M", machine(), *MEMORY.get(NAME, []), "-display", "none", "-monitor", "none"]
 
 
@@ -136,7 +136,7 @@ class Qmp:
 
 
 def with_store(path):
-    """How QEMU is told of the board's store."""
+    """QEMU's options for the board's store."""
     if NAME not in EEPROMS and NAME not in FLASHES:
         raise BoardError(f"{NAME} has no store in QEMU")
     size = store_bytes()
@@ -159,12 +159,12 @@ def store_bytes():
 
 
 def socket_of(port):
-    """A connection to what rsc takes as --port, of the two kinds that are sockets."""
+    """A connection to a --port of rsc that is a socket of either kind."""
     kind, place = port.split(":", 1)
     if kind == "tcp":
         host, number = place.rsplit(":", 1)
         line = socket.create_connection((host, int(number)))
-        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # a byte is sent when it is written, as on a line
+        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # sends each byte when it is written, as a line does
         return line
     line = socket.socket(socket.AF_UNIX)
     line.connect(place)
@@ -172,12 +172,12 @@ def socket_of(port):
 
 
 class Board:
-    """One running board. `port` is what rsc takes as --port."""
+    """One running board. `port` is a --port for rsc."""
 
     def __init__(self, elf=FIRMWARE, pty=False, serial_path=None, icount=REAL_TIME, extra=(), store=None, line=None, before="null"):
-        """`store`: a file with what the board keeps without power, made when it is not there; else it keeps nothing. `line`: of
-        QEMU's character devices, in the place of one that rsc can use; there is no `port` then. `before`: where what the
-        machine's serial lines before the link's say goes."""
+        """`store`: a file with the board's non-volatile memory, created if missing; None: the board keeps nothing. `line`: one
+        of QEMU's character devices, instead of one that rsc can use; then there is no `port`. `before`: the character device
+        for the output of the machine's serial lines before the link's."""
         if not Path(elf).is_file():
             raise BoardError(f"no firmware at {elf}: run scripts/firmware {NAME} first")
         self._folder = tempfile.TemporaryDirectory(prefix="robosync-")
@@ -186,8 +186,8 @@ class Board:
         self._pty = pty
         self._line = line
         self._before = before
-        # On a Unix socket a byte has to wait for the reader after some hundred others, on TCP after megabytes. Waiting
-        # makes a board whose time runs ahead lose events of its trace, and QEMU's micro:bit the interrupt of its UART.
+        # A Unix socket blocks after some hundred unread bytes, TCP after megabytes. When it blocks, a board whose time runs
+        # ahead loses events of its trace, and QEMU's micro:bit loses the interrupt of its UART.
         self._tcp = (icount == FAST or NAME in LOSES_INTERRUPT) and not pty and not serial_path and not line
         self._log = Path(self._folder.name) / "qemu.log"
         self._flash_file = store if NAME in FLASHES else None
@@ -244,7 +244,7 @@ class Board:
         raise BoardError("QEMU made no line")
 
     def check(self):
-        """Raises with QEMU's last words when it is not running any more."""
+        """Raises with QEMU's last words if it is no longer running."""
         if self._process.poll() is not None:
             raise BoardError(f"QEMU ended ({self._process.returncode}): {self.log()}")
 
@@ -255,7 +255,7 @@ class Board:
         return self._process.wait()
 
     def hold_up(self, seconds):
-        """As a host does that has something else to do for so long."""
+        """Stops QEMU for this time, as a busy host would."""
         self._process.send_signal(signal.SIGSTOP)
         try:
             time.sleep(seconds)
@@ -263,16 +263,16 @@ class Board:
             self._process.send_signal(signal.SIGCONT)
 
     def set_touch(self, raw, channel=0):
-        """What the touch sensor's input measures from now on, as its raw 16-bit number."""
+        """Sets what the touch sensor's input measures from now on, as its raw 16-bit number."""
         self.qmp.command("qom-set", path=TOUCH, property=f"vout[{channel}]", value=raw)
 
     def word(self, address):
-        """Of its memory, whoever runs."""
+        """A word of its memory, even while the firmware runs."""
         said = self.qmp.command("human-monitor-command", **{"command-line": f"xp /1xw {address:#x}"})
         return int(said.split()[1], 16)
 
     def cut_power(self):
-        """At whatever it is."""
+        """Immediately, whatever the firmware is doing."""
         self._save_flash()
         self._process.kill()
         self._process.wait()

@@ -1,6 +1,6 @@
 """scripts/demo, after the build. Everything shown comes from rsc and the firmware; nothing is staged.
 
-It also checks what it shows: exit code 1 when the robot does not react as the program says, or when it
+It also checks what it shows: exit code 1 if the robot does not react as the program says, or if it
 stopped, restarted or skipped a safety check during the second upload.
 """
 
@@ -20,10 +20,10 @@ from board import Board, BoardError, end_on_signals, machine
 ROOT = rsc.ROOT
 EXAMPLE = ROOT / "examples/touch_companion"
 READINGS = range(6)
-BEFORE = 9  # what is touched while a program starts, so that reading 0 is a change
+BEFORE = 9  # the reading while a program starts, so that reading 0 is a change
 HOLD_SECONDS = 0.5  # how long each reading lasts after the robot has noticed it
 PATIENCE_SECONDS = 15
-LEAST_CHECKS = 0.95  # of those that were due; a check that the computer was too busy for is left out
+LEAST_CHECKS = 0.95  # of those that were due; checks are skipped while the computer is too busy
 SAFETY_PERIOD_US = 1000 * periods.safety_ms()
 OLD, NEW = "LEVEL < 3", "LEVEL < 5"
 GENTLE, HARSH = "greeting.wav", "warning.wav"  # the sounds tell the two responses apart
@@ -45,7 +45,7 @@ def indent(text):
 
 
 def show_rsc(*arguments):
-    """Runs rsc, showing the command and all it says."""
+    """Runs rsc, showing the command and all its output."""
     shown = [str(a).replace(str(ROOT) + "/", "") for a in arguments]
     print(f"  $ rsc {' '.join(shown)}")
     done = rsc.call(*arguments)
@@ -56,7 +56,7 @@ def show_rsc(*arguments):
 
 
 class Monitor:
-    """`rsc monitor` in the background: shows its lines as they come, and keeps them."""
+    """`rsc monitor` in the background: shows its lines as they come, and stores them."""
 
     def __init__(self, board):
         self.lines = []
@@ -75,7 +75,7 @@ class Monitor:
                 print(f"      {line.rstrip()}", flush=True)
 
     def wait_for(self, text, since):
-        """Until a line behind the first `since` ends in `text`."""
+        """Waits until a line after the first `since` lines ends in `text`."""
         deadline = time.monotonic() + PATIENCE_SECONDS
         while not any(line.endswith(text) for line in self.lines[since:]):
             if time.monotonic() > deadline:
@@ -83,7 +83,8 @@ class Monitor:
             time.sleep(0.02)
 
     def __enter__(self):
-        """Returns when it listens: until it says more than which board it is, the touch trembles above the threshold."""
+        """Returns when the monitor listens. Until it prints more than the board's name, the touch reading alternates above the
+        threshold."""
         deadline = time.monotonic() + PATIENCE_SECONDS
         while len(self.lines) < 2 and time.monotonic() < deadline:
             self._board.set_touch(BEFORE - 1)
@@ -101,7 +102,7 @@ class Monitor:
 
 
 def touch_and_watch(board, threshold):
-    """Touches with 0 … 5, and checks which response each reading got."""
+    """Touches with 0 … 5, and checks the response to each reading."""
     with Monitor(board) as monitor:
         for reading in READINGS:
             before = len(monitor.lines)
@@ -114,7 +115,7 @@ def touch_and_watch(board, threshold):
 
 
 def expect_response(reading, threshold, said):
-    """The rule is an edge: a response runs when the side changes, here at the threshold only."""
+    """A rule reacts to an edge: a response runs when the reading crosses over, here only at the threshold."""
     started = {name for name in (GENTLE, HARSH) if name in said}
     wanted = {HARSH} if reading == threshold else set()
     if reading == READINGS[0]:
@@ -139,9 +140,9 @@ def change_threshold(folder):
 
 
 def check_went_on(before, after):
-    """The same boot, and the safety checks went on. How late one was is told, not judged: here QEMU's clock
-    follows this computer's, so whatever keeps it from running makes the robot late. Where the clock
-    counts instructions, tests/e2e asks for none that is late."""
+    """Checks that the board did not reboot and the safety checks continued. Their lateness is shown, not judged: here QEMU's
+    clock follows this computer's, so anything that delays QEMU makes the robot late. Where the clock
+    counts instructions, tests/e2e requires that none is late."""
     seconds = (after["uptime_us"] - before["uptime_us"]) / 1e6
     checks = after["safety_checks"] - before["safety_checks"]
     print(f"    uptime         {before['uptime_us'] / 1e6:8.3f} s -> {after['uptime_us'] / 1e6:8.3f} s")

@@ -1,4 +1,4 @@
-"""scripts/first-board: what a board says of itself over the line, held against what it should be."""
+"""scripts/first-board: compares what a board reports over the line with what it should report."""
 
 import argparse
 import json
@@ -13,7 +13,7 @@ CLOCK_SECONDS = 10
 CLOCK_TOLERANCE = 0.01
 LOOKS_EVERY = 1  # second
 PORT_SECONDS = 15
-KEPT_SECONDS = 15  # until a program that is new is kept: its trial, and writing it
+KEPT_SECONDS = 15  # until a new program is kept: its trial, and writing it
 READ = "3s"
 ROBOT = """{{"board": "{board}",
  "sensors": [{{"name": "hand", "type": "VIRTUAL", "channels": {{"LEVEL": {{"range": [0, 10]}}}}}}],
@@ -41,7 +41,7 @@ class Table:
 
 
 def port_of(board, listed):
-    """Of what `rsc ports` lists, the one at which such a board answers."""
+    """The port in the list of `rsc ports` on which such a board answers."""
     answering = [one["port"] for one in listed if "port" in one and one["board"] == board]
     if len(answering) != 1:
         raise rsc.RscError(f"{len(answering)} ports at which a {board} answers: name it with --port (`rsc ports`)")
@@ -49,7 +49,7 @@ def port_of(board, listed):
 
 
 def find_port(board):
-    """A board that was flashed just now comes back after a moment."""
+    """Tries for a while: a board that was just flashed takes a moment to come back."""
     deadline = time.monotonic() + PORT_SECONDS
     while True:
         listed = json.loads(rsc.run("ports", "--format", "json"))
@@ -104,7 +104,7 @@ def look_at_store(table, port):
 
 
 def on_board(board):
-    """Names of the sensors that the board has on it."""
+    """The board's own sensors: (name, channels)."""
     profile = json.loads((rsc.ROOT / "stdlib/boards" / f"{board}.json").read_text("utf-8"))
     devices = rsc.ROOT / "stdlib/devices"
     for name, wiring in profile.get("on_board", {}).items():
@@ -114,7 +114,7 @@ def on_board(board):
 
 
 def readings_of(name, channels, board, port, folder):
-    """{channel: its readings, in its own unit}"""
+    """{channel: its readings, in the channel's unit}"""
     (folder / "robot.json").write_text(json.dumps({"board": board, "sensors": [{"name": name, "device": name}]}))
     (folder / "robot.rsl").write_text("".join(f"EVERY 1s\nDO\n  LOG {name} {channel}\nEND\n"
                                               for channel in channels))

@@ -1,7 +1,7 @@
-"""scripts/fuzz: runs the fuzzer in chunks, on several cores, and adds up what they have found.
+"""scripts/fuzz: runs the fuzzer in chunks, on several cores, and adds up their results.
 
-A chunk is a seed; the same seed gives the same images, as long as the seeds that they are made from,
-in build/host-asan/tests/fuzz/seeds, are the same. Assumes that build/host-asan is built.
+Each chunk has a random seed. The same seed gives the same images, as long as the images that they are mutated
+from, in build/host-asan/tests/fuzz/seeds, are the same. Assumes that build/host-asan is built.
 """
 
 import argparse
@@ -22,7 +22,7 @@ SAVED = ROOT / "build/fuzz"
 
 
 def read_state(path):
-    """{seed: result} of the chunks that were run before with the same number of images."""
+    """{seed: result} of the chunks that have been run before."""
     if path is None or not path.exists():
         return {}
     results = (json.loads(line) for line in path.read_text().splitlines() if line)
@@ -30,7 +30,7 @@ def read_state(path):
 
 
 def run_chunk(fuzzer, seeds, seed, images):
-    """What the fuzzer has found; None where it ended with a failure, which it has printed."""
+    """The fuzzer's results; None if it failed, in which case it has printed why."""
     done = subprocess.run([fuzzer, "--images", str(images), "--seed", str(seed), "--seeds", seeds,
                            "--saved", SAVED / f"failed-{seed}.rsb"],
                           check=False, text=True, stdout=subprocess.PIPE)
@@ -75,7 +75,7 @@ def main():
     chunks = [c for c in chunks_of(wanted.images, wanted.seed)
               if found.get(c[0], {}).get("images") != c[1]]
     begin = time.monotonic()
-    # A copy of its own, so that a build meanwhile changes nothing.
+    # Runs a copy, so that a build in the meantime changes nothing.
     with tempfile.TemporaryDirectory(prefix="robosync-fuzz-") as folder:
         fuzzer = shutil.copy2(FUZZER, folder)
         seeds = shutil.copytree(FUZZER.parent / "seeds", Path(folder) / "seeds")

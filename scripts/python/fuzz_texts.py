@@ -1,7 +1,7 @@
 """scripts/fuzz --texts: runs libFuzzer on each target that reads texts from outside, on several cores.
 
-A target begins with the examples, what is kept of earlier findings (tests/fuzz/texts/kept) and what it has learned in
-earlier runs (build/fuzz/texts/NAME), and goes on with changes of these. Assumes that build/host-fuzz is built.
+A target starts with the examples, the kept inputs of earlier findings (tests/fuzz/texts/kept) and its corpus from
+earlier runs (build/fuzz/texts/NAME), and mutates them. Assumes that build/host-fuzz is built.
 """
 
 import argparse
@@ -18,7 +18,7 @@ BUILT = ROOT / "build/host-fuzz/tests/fuzz/texts"
 LEARNED = ROOT / "build/fuzz/texts"
 FOUND = ROOT / "build/fuzz/found"
 EXAMPLES = {"rsl": "*.rsl", "robot": "robot.json", "scenario": "*.json"}
-LONGEST = {"lsp": 20_000}  # bytes of an input; a larger one takes longer, and shows little more
+LONGEST = {"lsp": 20_000}  # bytes of an input; a larger one takes longer and finds little more
 MOST_SECONDS, MOST_MEGABYTES = 10, 2048  # for one input
 
 
@@ -27,14 +27,14 @@ def targets():
 
 
 def words():
-    """Keywords and keys, which nobody finds by changing letters."""
+    """Keywords and keys, which mutations of single letters would not find."""
     keywords = re.findall(r"^KEYWORD\((\w+),", (ROOT / "compiler/syntax/keywords.def").read_text(), re.M)
     keys = re.findall(r'"(\w+)"', (ROOT / "compiler/config/keys.def").read_text())
     return sorted({*keywords, *keys})
 
 
 def starts_of(name):
-    """Copies of the examples, in a folder of their own: a corpus is a folder."""
+    """Copies of the examples, in their own folder: a corpus is a folder."""
     folder = LEARNED / f"{name}-examples"
     folder.mkdir(parents=True, exist_ok=True)
     for path in (ROOT / "examples").rglob(EXAMPLES[name]) if name in EXAMPLES else ():
@@ -43,7 +43,7 @@ def starts_of(name):
 
 
 def fuzz(name, seconds, dictionary):
-    """(name, whether nothing was found, libFuzzer's last words)"""
+    """(name, whether nothing was found, libFuzzer's output)"""
     learned = LEARNED / name
     learned.mkdir(parents=True, exist_ok=True)
     kept = [folder for folder in [TEXTS / "kept" / name] if folder.is_dir()]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""grammar/rsl.tmLanguage.json, the colours of RSL in editors, made from the list of its keywords.
+"""Generates grammar/rsl.tmLanguage.json, the colours of RSL in editors, from the list of its keywords.
 
 usage: scripts/python/highlighting.py > grammar/rsl.tmLanguage.json
 """
@@ -11,13 +11,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 OPERATORS = {"AND", "OR", "NOT", "MOD", "IS"}
 TRUTHS = {"TRUE", "FALSE"}
-CONTROL = {"item", "part", "statement", "opens", "begins"}  # roles of what a line is about
+CONTROL = {"item", "part", "statement", "opens", "begins"}  # roles that decide what a line is about
 NAMED = ["DEFINE", "BEHAVIOR", "BEHAVIOUR", "SAFETY", "MOTION", "CHECK", "STATE", "FEELING", "TIMER", "LET", "REMEMBER",
          "LIST"]
 
 
 def keywords():
-    """{spelling: its roles} of compiler/syntax/keywords.def."""
+    """{spelling: its roles} from compiler/syntax/keywords.def."""
     text = (ROOT / "compiler/syntax/keywords.def").read_text("utf-8")
     rows = re.findall(r"^KEYWORD\(([A-Z ]+), \w+, ([^)]*)\)", text, re.M)
     return {spelling: set(re.findall(r"\w+", roles)) for spelling, roles in rows}
@@ -29,7 +29,7 @@ def functions():
 
 
 def any_of(words):
-    """A pattern for whole words, in any case of their letters."""
+    """A pattern for whole words, ignoring case."""
     longest_first = sorted(words, key=lambda word: (-len(word), word))
     return r"(?i)\b(?:" + "|".join(word.replace(" ", r"\s+") for word in longest_first) + r")\b"
 
@@ -51,7 +51,7 @@ def grammar():
         "scopeName": "source.rsl",
         "fileTypes": ["rsl"],
         "patterns": [
-            # A % behind digits is a unit, anywhere else it begins a comment.
+            # A % after digits is a unit; anywhere else it begins a comment.
             {"name": "constant.numeric.rsl",
              "match": r"(?<![\w.])\d+(?:\.\d+)?(?:%|[A-Za-z\u00b0\u00b5\u03bc]+(?:/[A-Za-z]+)?)?"},
             {"name": "comment.line.rsl", "match": r"[%#].*$"},

@@ -1,12 +1,12 @@
-"""The emulator of the micro:bit V2: QEMU's machine `microbit`, which is the first micro:bit, with another core and clock.
+"""Makes the emulator of the micro:bit V2: QEMU's machine `microbit`, which is the first micro:bit, with another core and clock.
 
 usage: microbit_emulator.py QEMU TARGET
 
-TARGET becomes a copy of the program QEMU (qemu-system-arm, x86-64) in which some numbers of that machine are others, all as
-long as before: its core is a Cortex-M4 instead of a Cortex-M0, and runs with 64 MHz instead of 16; a page of its flash has 4 KB
-instead of 1, and is erased, completely and at once, also by the register that the nRF52833 has for erasing it in parts. How much
-memory it has is a property, and set at its start (board.py). QEMU itself stays as it is. Each place must be found exactly once;
-else nothing is written.
+TARGET becomes a copy of the program QEMU (qemu-system-arm, x86-64) in which some numbers of that machine are replaced by others
+of the same length. Its core is a Cortex-M4 instead of a Cortex-M0, at 64 MHz instead of 16. A page of its flash has 4 KB instead
+of 1, and the register with which the nRF52833 erases a page in parts erases it completely in one step. The size of its memory is
+a property that board.py sets at start. QEMU itself stays as it is. Each place must be found exactly once; otherwise nothing is
+written.
 """
 
 import re
@@ -18,17 +18,17 @@ CORE, NEW_CORE = b"\0cortex-m0-arm-cpu\0", b"\0cortex-m4-arm-cpu\0"
 # A clock's period in QEMU, in 2^-32 ns, is the second argument of a call: `movabs $period, %rsi`.
 MOVE = b"\x48\xbe"
 HZ, NEW_HZ = 16_000_000, 64_000_000
-# Many machines have such a call. That of this one is in the function that names its memory some hundred bytes later.
+# Many machines have such a call. This machine's is in the function that names its memory some hundred bytes later.
 MEMORY = b"\0nrf51.sram\0"
 NEAR = 1024
-LOAD_ADDRESS = b"\x48\x8d"  # `lea offset(%rip), register`, and a byte that says which
+LOAD_ADDRESS = b"\x48\x8d"  # `lea offset(%rip), register`; the next byte says which register
 LOAD = 1  # a segment
-# What is written to the flash's controller: `lea -0x504(%rbp), %rax; cmp $0x10, %rax; ja …`, and a jump by a table of what the
-# registers do from 0x504 on, in steps of one byte.
+# The handler of writes to the flash's controller: `lea -0x504(%rbp), %rax; cmp $0x10, %rax; ja …`, and a jump through a table of
+# the registers from 0x504 on, with an entry for each byte.
 FIRST_REGISTER = 0x504
 REGISTERS = re.compile(rb"\x48\x8d\x85\xfc\xfa\xff\xff\x48\x83\xf8(\x10)\x77.\x48\x8d\x15(....)\x48\x63\x04\x82\x48\x01\xd0\xff\xe0", re.S)
 ERASE, ERASE_PARTLY = 0x508, 0x518
-# … and in it, from where a page is erased on: the page that an address is in, how many bytes it has, and its last eight.
+# In the code that erases a page: the page of an address, its size in bytes, and its last eight bytes.
 PAGE, NEW_PAGE = 1024, 4096
 OF_A_PAGE = ((rb"\x48\x81\xe3", lambda page: -page), (rb"\x2d", lambda page: page), (rb"\xba", lambda page: page),
              (rb"\x48\xc7\x80", lambda page: page - 8), (rb"\x8d\x88", lambda page: page))
@@ -36,7 +36,7 @@ IT_IS_ERASED_IN = 128
 
 
 class Unknown(ValueError):
-    """The program is not built as it should be."""
+    """The program is not built as expected."""
 
 
 def load_clock(hz):
@@ -58,7 +58,7 @@ def only(found, what):
 
 
 def address_of(program, at):
-    """Where that byte of the file is when the program runs."""
+    """The run-time address of that byte of the file."""
     headers, size, count = (*struct.unpack_from("<Q", program, 32), *struct.unpack_from("<HH", program, 54))
     for i in range(count):
         kind, _, offset, address, _, length = struct.unpack_from("<IIQQQQ", program, headers + i * size)
@@ -68,7 +68,7 @@ def address_of(program, at):
 
 
 def offset_of(program, address):
-    """Where in the file that is which is at that address when the program runs."""
+    """The place in the file of the byte at that run-time address."""
     headers, size, count = (*struct.unpack_from("<Q", program, 32), *struct.unpack_from("<HH", program, 54))
     for i in range(count):
         kind, _, offset, begin, _, length = struct.unpack_from("<IIQQQQ", program, headers + i * size)
@@ -78,7 +78,7 @@ def offset_of(program, address):
 
 
 def loads_address(program, at, wanted):
-    """Some instruction behind `at` does."""
+    """Whether an instruction soon after `at` loads the address `wanted`."""
     for place in places(program[at:at + NEAR], LOAD_ADDRESS):
         end = at + place + len(LOAD_ADDRESS) + 1 + 4
         offset, = struct.unpack_from("<i", program, end - 4)
@@ -94,7 +94,7 @@ def patch_flash(program, changed):
     def entry(register):
         return offset_of(program, table) + 4 * (register - FIRST_REGISTER)
 
-    # Behind the table stands, and is overwritten, the name by which QEMU would complain about another register.
+    # The new entry overwrites what follows the table: a name for QEMU's complaints about other registers.
     erase = program[entry(ERASE):entry(ERASE) + 4]
     changed[entry(ERASE_PARTLY):entry(ERASE_PARTLY) + 4] = erase
     changed[found.start(1)] = ERASE_PARTLY - FIRST_REGISTER

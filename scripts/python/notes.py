@@ -1,8 +1,8 @@
-"""How often `pitch` is right about notes (scripts/rates), as a table.
+"""Measures how often `pitch` is right about notes (scripts/rates), as a table.
 
-Notes of the instruments of a sound font, which are recordings of instruments and singers that fluidsynth plays, and tones that are computed:
-each for a second, as loud as sounds.py makes everything. A robot hears them in `rsc run`. Counted is what its PITCH is every 20 ms, from
-160 ms after a note's begin until its end."""
+The notes come from the instruments of a sound font (recordings of instruments and singers, played by fluidsynth), or are
+computed tones. Each lasts a second, at the loudness of sounds.py. A robot hears them in `rsc run`. Its PITCH is sampled every
+20 ms, from 160 ms after a note's beginning until its end."""
 
 import math
 import subprocess
@@ -34,12 +34,12 @@ END
 
 class Part(NamedTuple):
     name: str
-    programs: list  # of General MIDI: (number, lowest note, highest note), as far as its players go and `pitch` hears
+    programs: list  # General MIDI: (number, lowest note, highest note) within the instrument's range and that of `pitch`
 
 
 class Tones(NamedTuple):
     name: str
-    heights: list  # of its multiples
+    heights: list  # amplitudes of its harmonics
     lowest: int
     highest: int  # notes
     vibrato_cents: int = 0
@@ -68,7 +68,7 @@ class Note(NamedTuple):
 
 
 def notes(part, which):
-    """Every second one of each instrument."""
+    """Every second note of each instrument."""
     return [Note(program, key) for program, low, high in part.programs for key in range(low + which, high + 1, 2)]
 
 
@@ -91,7 +91,7 @@ def track(all_notes):
     for note in all_notes:
         events += b"\x00" + bytes([0xC0, note.program])
         events += length(pause) + bytes([0x90, note.key, 100]) + length(sounding) + bytes([0x80, note.key, 0])
-        events += b"\x00" + bytes([0xB0, 120, 0])  # its end is not heard
+        events += b"\x00" + bytes([0xB0, 120, 0])  # all sound off: the note's decay is not heard
     events += length(2 * pause) + b"\xff\x2f\x00"
     tempo = b"\x00\xff\x51\x03" + (1_000_000).to_bytes(3, "big")
     body = tempo + bytes(events)
@@ -104,7 +104,7 @@ def length(ticks):
 
 
 def played(all_notes):
-    """[(note, its sound at 8,000 samples a second)]; each has silence before it."""
+    """[(note, its sound at 8,000 samples a second)]; silence precedes each in the file that is played."""
     with tempfile.TemporaryDirectory() as name:
         midi, sound = Path(name) / "notes.mid", Path(name) / "notes.wav"
         midi.write_bytes(track(all_notes))
@@ -117,7 +117,7 @@ def played(all_notes):
 
 
 def lay_out(recordings):
-    """(all of them behind each other, [(note, begin in ms)])."""
+    """(all of them in a row, [(note, beginning in ms)])."""
     pause = bytes(int(PAUSE_S * RATE) * BYTES)
     sound, places = bytearray(pause), []
     for note, recording in recordings:
@@ -127,7 +127,7 @@ def lay_out(recordings):
 
 
 def heard(sound):
-    """[PITCH in Hz, or None] of each millisecond, as the robot has it."""
+    """[the robot's PITCH in Hz, or None] for each millisecond."""
     changes = {}
     for event in rates.run(ROBOT, PROGRAM, sound, "--all"):
         if event.get("sensor") == "song":

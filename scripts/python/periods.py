@@ -1,4 +1,4 @@
-"""Periods of the firmware, as its sources say them. Which board it is says ROBOSYNC_BOARD (board.py)."""
+"""Periods of the firmware, read from its sources. ROBOSYNC_BOARD selects the board (board.py)."""
 
 import re
 
@@ -6,7 +6,7 @@ from board import NAME, ROOT
 
 
 def period_ms(source, constant):
-    """A period of the runtime that is written down in milliseconds."""
+    """A period of the runtime that its source states in milliseconds."""
     found = re.search(rf"{constant} = (\d+);", (ROOT / source).read_text())
     if not found:
         raise LookupError(f"{source} has no {constant}")
@@ -14,19 +14,19 @@ def period_ms(source, constant):
 
 
 def safety_ms():
-    """From one check of the safety monitor to the next while a program runs."""
+    """The safety monitor's period while a program runs."""
     return period_ms("runtime-m4/policy/rules.hpp", "kSafetyPeriodMs")
 
 
 def board_header():
-    """That of the board, or of the chip which it has in common with others, as its board.cmake says."""
+    """The board's header, or that of its chip if its board.cmake includes one."""
     folder = ROOT / "runtime-m4/boards" / NAME
     chip = re.search(r"include\(boards/(\w+)/", (folder / "board.cmake").read_text())
     return f"runtime-m4/boards/{chip[1] if chip else NAME}/board.hpp"
 
 
 def idle_ms():
-    """… and while none does: what safety::idle_period() makes of the time of the board's watchdog."""
+    """The same while no program runs: safety::idle_period() for the board's watchdog time."""
     source = "runtime-m4/safety/period.hpp"
     share = re.search(r"watchdog_ms \* (\d+) / (\d+)\)", (ROOT / source).read_text())
     if not share:

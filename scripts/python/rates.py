@@ -1,7 +1,7 @@
 """Hits and false alarms of sound_events (scripts/rates), as a table.
 
-All recordings of a kind are laid one behind the other, each as loud as the others in its loudest 20 ms, with pauses between, and
-played to a robot in `rsc run`. A recording has an event when the robot names it between its begin and a second after its end."""
+All recordings of a kind are played in a row, with pauses in between, to a robot in `rsc run`. Each is as loud as the others in
+its loudest 20 ms. A recording has an event if the robot names it between its beginning and a second after its end."""
 
 import json
 import subprocess
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "build/rates"
 PAGE = ROOT / "docs/algorithms.md"
 RATE = 8000
-LONGEST_S = 20  # of a recording, which is cut there
+LONGEST_S = 20  # recordings are cut there
 RAW = sounds.raw(RATE)
 ROBOT = {
     "sensors": [{"name": "microphone", "type": "VIRTUAL", "device": "microphone"}],
@@ -60,7 +60,7 @@ def kinds():
 
 
 def read(path):
-    """The recording at 8,000 samples a second; None where sox cannot read it, or hears nothing."""
+    """The recording at 8,000 samples a second; None if sox cannot read it, or if it is silent."""
     said = subprocess.run(["sox", "-R", path, *RAW], capture_output=True, check=False)
     return None if said.returncode != 0 else sounds.as_loud(said.stdout[:LONGEST_S * RATE * BYTES], RATE)
 
@@ -84,19 +84,19 @@ def milliseconds(sound):
 
 
 def heard(sound):
-    """[(time in seconds, event)] as the robot names them."""
+    """[(time in seconds, event)]: the events that the robot names."""
     return [(event["t_us"] / 1e6, event["word"]) for event in run(ROBOT, PROGRAM, sound)
             if event.get("event") == "command" and event.get("verb") == "SAY"]
 
 
 def count(places, events, wanted):
-    """How many of the recordings have that event."""
+    """The number of recordings that have that event."""
     times = [time for time, event in events if event == wanted]
     return sum(any(begin <= time <= end + 1 for time in times) for _, begin, end in places)
 
 
 def rates(which):
-    """Rows: kind, of how many, then for each noise: (claps, speech)."""
+    """Rows: kind, number of recordings, minutes, then for each noise: (claps, speech)."""
     rows = []
     for kind in kinds():
         sound, places = sounds.lay_out(kind.files[which::2], read, RATE)
@@ -120,7 +120,7 @@ def table(rows):
 
 
 def show(text, mark, page=PAGE):
-    """Prints the table, and puts it into the page behind its mark where that is asked for."""
+    """Prints the table; with --write, also puts it into the page after its mark."""
     print(text)
     if "--write" in sys.argv:
         before, rest = page.read_text().split(f"{mark}\n", 1)

@@ -1,4 +1,4 @@
-"""scripts/robot: boots the board, prints where it can be reached, stays until it is ended."""
+"""scripts/robot: boots the board, prints its port and runs until it is ended."""
 
 import argparse
 import os

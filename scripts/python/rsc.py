@@ -10,7 +10,7 @@ TIMEOUT = 120
 
 
 class RscError(RuntimeError):
-    """rsc ended with another code than 0; the message is what it said."""
+    """rsc ended with a code other than 0; the message is its output."""
 
 
 def call(*arguments, timeout=TIMEOUT, cwd=None):
@@ -21,7 +21,7 @@ def call(*arguments, timeout=TIMEOUT, cwd=None):
 
 
 def run(*arguments, timeout=TIMEOUT):
-    """stdout; raises when rsc says no."""
+    """stdout; raises if rsc fails."""
     done = call(*arguments, timeout=timeout)
     if done.returncode:
         raise RscError(f"rsc {arguments[0]} ended with {done.returncode}: {done.stderr.strip()}")

@@ -1,5 +1,5 @@
-"""How often `objects` is right (scripts/rates), as a table: on pictures that tests/companion/draw.cpp draws. Its settings were chosen on those
-of other seeds (--settings)."""
+"""Measures how often `objects` is right (scripts/rates), as a table: on pictures that tests/companion/draw.cpp draws. Its
+settings were chosen on pictures with other seeds (--settings)."""
 
 import os
 import random
@@ -23,9 +23,9 @@ HUES = {"orange": (18, 42), "yellow": (48, 67), "green": (73, 162), "blue": (168
 
 class Kind(NamedTuple):
     name: str
-    output: str  # that knows it
-    quiet: str  # … what it says of nothing
-    draw: object  # of chance: (what it is, how it is drawn)
+    output: str  # the output that reports it
+    quiet: str  # the output's value when there is nothing
+    draw: object  # function of a random generator: (what it is, how it is drawn)
 
 
 def place(chance, size):
@@ -58,11 +58,11 @@ KINDS = [
 
 
 def said(pictures, noise, first_seed):
-    """What it says of each of the pictures: {output: value}."""
+    """The program's output for each of the pictures: {output: value}."""
     with tempfile.TemporaryDirectory() as folder:
         lines = (f"{folder}/p{i:03}.png {first_seed + i} {noise} {BOXES} {things}" for i, things in enumerate(pictures))
         subprocess.run([DRAW], input="\n".join(lines), check=True, text=True)
-        # Numbered pictures are as those of a camera, which gives no more at their end.
+        # Numbered pictures are read like a camera's; at their end the camera gives no more, and the program fails.
         done = subprocess.run([PROGRAM, "--source", f"{folder}/p%03d.png", *USUAL], check=False, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE)
     answers = []

@@ -1,5 +1,4 @@
-"""How scripts/rates makes what it plays, for all modules that hear: each recording as loud as the others, one behind the other, and in
-as much noise.
+"""How scripts/rates prepares the sound for all modules that hear: recordings in a row, equally loud, and in equal noise.
 
 Sound is bytes: 16 bits a sample, one channel, `rate` samples a second."""
 
@@ -14,31 +13,31 @@ with warnings.catch_warnings():
 
 BYTES = 2
 PAUSE_S = 1.5
-LOUDEST = 3277  # root of the mean square of the loudest 20 ms: 20 dB below the loudest tone there is
+LOUDEST = 3277  # root mean square of the loudest 20 ms: 20 dB below full scale
 NOISES_DB = (40, 20, 10, 5)  # how far the noise is below that; 40: a quiet room
 
 
 def raw(rate):
-    """How sox gives it."""
+    """sox's options for this format."""
     return ("-r", str(rate), "-c", "1", "-b", "16", "-e", "signed", "-t", "raw", "-")
 
 
 def as_loud(sound, rate):
-    """As the others in its loudest 20 ms; None when nothing is heard."""
+    """Scales the sound so that its loudest 20 ms have the common loudness; None if it is silent."""
     block = rate // 50 * BYTES
     loudest = max((audioop.rms(sound[at:at + block], BYTES) for at in range(0, len(sound) - block + 1, block)), default=0)
     return audioop.mul(sound, BYTES, LOUDEST / loudest) if loudest else None
 
 
 def noise(length, rate):
-    """Pink, the same every time, as loud as the loudest 20 ms of a recording."""
+    """Pink noise, the same every time, as loud as the loudest 20 ms of a recording."""
     sound = subprocess.run(["sox", "-R", "-n", *raw(rate), "synth", "20", "pinknoise", "gain", "-12"], capture_output=True, check=True).stdout
     sound = audioop.mul(sound, BYTES, LOUDEST / audioop.rms(sound, BYTES))
     return (sound * (length // len(sound) + 1))[:length]
 
 
 def mixed(sound, hiss, below):
-    """With the noise so many dB below."""
+    """The sound with the noise `below` dB below it."""
     return audioop.add(sound, audioop.mul(hiss[:len(sound)], BYTES, 10 ** (-below / 20)), BYTES)
 
 
@@ -47,7 +46,7 @@ def seconds(sound, rate):
 
 
 def lay_out(paths, read, rate):
-    """(all of them behind each other, [(path, begin, end) in seconds]); read(path) gives None where nothing is heard."""
+    """(all of them in a row, [(path, begin, end) in seconds]); read(path) returns None for a silent recording."""
     pause = bytes(int(PAUSE_S * rate) * BYTES)
     sound, places = bytearray(2 * pause), []
     for path in paths:
@@ -73,5 +72,5 @@ def title(below):
 
 
 def head(first):
-    """The first two lines of a table, whose other columns are these."""
+    """The first two lines of a table; the columns after `first` are the noises."""
     return [f"| {first} | " + " | ".join(map(title, NOISES_DB)) + " |", "|---" + "|---" * (len(NOISES_DB) + first.count("|")) + "|"]

@@ -1,16 +1,17 @@
-"""The deepest that each thread of a firmware can stand on its stack, from the code that was linked.
+"""The deepest stack use of each thread of a firmware, computed from the linked code.
 
-Every way from the thread's entry through the functions that it calls is added up, whether or not a test ever goes it. What
-is called by a pointer is told by CALLED_BY_POINTER; a call that nothing there fits, and recursion, raise StackError.
-tests/e2e/test_stack_depth.py holds the stacks against it; `scripts/python/stack_depth.py ELF PATTERN` shows the deepest
-way of the function whose name fits, with what each on it takes.
+Every call path from the thread's entry is added up, whether or not a test ever takes it. CALLED_BY_POINTER lists the targets
+of calls by pointer; a call that matches nothing there, and recursion, raise StackError. tests/e2e/test_stack_depth.py compares
+the stacks with the result. `scripts/python/stack_depth.py ELF PATTERN` prints the deepest path from the function whose name
+matches, with the bytes of each function on it.
 """
 
 import re
 import subprocess
 import sys
 
-# Whose calls by pointer lead where: functions whose address stands in the image, by their names. The first that fits counts.
+# Caller and possible targets of calls by pointer: targets are functions whose address is in the image and whose name matches. The
+# first line that matches the caller counts.
 BOARD = r"boards::(\w+::)?Board::"
 PANEL = r"boards::(PanelSignal<.*>|PanelOutput)::(begin|show|end)\("
 OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound|say|panel)\(|" + PANEL
@@ -43,15 +44,15 @@ CALLED_BY_POINTER = (
     (r"update::Server::", BOARD + r"(link_|name|store|reset_reason|buses|pins|input)|" + STORE),
     (r"robosync::Runtime::|boards::", OUTPUTS + "|" + BOARD + r"(name|buses|pins|store)\(|" + STORE),
 )
-# What these call by pointer stands on another stack than theirs.
+# This function's calls by pointer run on another stack.
 ON_ANOTHER_STACK = "robosync_call_in_sandbox"
-# On top of a thread that is interrupted and gives way: what the core stacks, aligned to 8, and what PendSV_Handler saves
-# (switch.S). With FPU registers there are more of both.
+# Added for a thread that is preempted: what the core stacks, aligned to 8, and what PendSV_Handler saves
+# (switch.S). Both are larger with FPU registers.
 FRAMES = 4 + 32 + 36
 FPU_FRAMES = 4 + 104 + 100
-GUARD = 32  # port::kGuard, below the stack of a thread with privileges
+GUARD = 32  # port::kGuard, below the stack of a privileged thread
 CALLS = re.compile(r"^(bl?|b(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le))(\.[nw])?$")
-LAST_ACTS = 3  # instructions between what ends a frame and the jump
+LAST_ACTS = 3  # most instructions between the end of a frame and a tail call's jump
 REGISTERS = re.compile(r"([rsd])(\d+)-[rsd](\d+)")
 
 
@@ -60,13 +61,13 @@ class StackError(Exception):
 
 
 def _listed(text):
-    """How many registers {r4-r7, lr} are."""
+    """The number of registers in a list such as {r4-r7, lr}."""
     parts = text[text.index("{") + 1:text.index("}")].split(",")
     return sum(int(m[3]) - int(m[2]) + 1 if (m := REGISTERS.search(part)) else 1 for part in parts)
 
 
 def _pushed(operation, operands):
-    """By how many bytes an instruction lowers the stack pointer."""
+    """The bytes by which an instruction lowers the stack pointer."""
     if operation.startswith("vpush"):
         return (8 if "d" in operands else 4) * _listed(operands)
     if operation.startswith("push") or operation.startswith("stmdb") and operands.startswith("sp!"):
@@ -89,16 +90,16 @@ class Function:
     def __init__(self, at, name):
         self.at = at
         self.name = name
-        self.most = 0  # bytes of its own
-        self.calls = []  # (function's address, None by pointer; bytes of its own that stand then)
+        self.most = 0  # bytes of its own frame
+        self.calls = []  # (function's address, None: by pointer; bytes of its own frame at that time)
         self.uses_fpu = False
-        self._recently = 9  # instructions since the stack was let go
+        self._recently = 9  # instructions since the frame was released
 
     def add(self, operation, operands):
         self.most += _pushed(operation, operands)
         self.uses_fpu = self.uses_fpu or operation.startswith("v")
         self._recently = 0 if _lets_go(operation, operands) else self._recently + 1
-        # Who jumps to another function right behind the end of his frame has none any more.
+        # A jump to another function right after the frame's end is a tail call: the frame no longer exists.
         stands = self.most if operation.startswith("bl") or self._recently > LAST_ACTS else 0
         if operation in ("blx", "bx") and operands != "lr":
             self.calls.append((None, stands))
@@ -120,7 +121,7 @@ class Firmware:
         words, is_loaded = set(), True
         for line in self._objdump(tools, elf, "-s"):
             if line.startswith("Contents of section "):
-                is_loaded = not line.startswith("Contents of section .debug")  # whose words are no pointers, but may look like some
+                is_loaded = not line.startswith("Contents of section .debug")  # its words may look like pointers
             elif is_loaded and (m := re.match(r" [0-9a-f]+ ((?:[0-9a-f]{8} ){1,4})", line)):
                 words.update(int.from_bytes(bytes.fromhex(word), "little") for word in m[1].split())
         self._pointed_to = [at for at in self._functions if at | 1 in words]
@@ -132,18 +133,18 @@ class Firmware:
                               stdout=subprocess.PIPE).stdout.splitlines()
 
     def entry(self, pattern):
-        """The address of the one function whose name fits."""
+        """The address of the only function whose name matches."""
         found = [at for at, function in self._functions.items() if re.search(pattern, function.name)]
         if len(found) != 1:
             raise StackError(f"{len(found)} functions are named {pattern}")
         return found[0]
 
     def own(self, name):
-        """Bytes of this function alone."""
+        """Bytes of this function's own frame."""
         return next(function.most for function in self._functions.values() if function.name == name)
 
     def deepest(self, at, way=()):
-        """(bytes, whether the FPU is used, the names of the functions on the way) from this function on."""
+        """(bytes, whether the FPU is used, the names of the functions on the path), from this function on."""
         if at in way:
             raise StackError("recursion: " + " → ".join(self._functions[a].name for a in (*way, at)))
         if at not in self._deepest:
@@ -157,7 +158,7 @@ class Firmware:
         return self._deepest[at]
 
     def _targets(self, function, callee):
-        """Where a call leads; a jump within the function is none."""
+        """The targets of a call; a jump within the function has none."""
         if callee is not None:
             return [callee] if callee in self._functions else []
         if function.name == ON_ANOTHER_STACK:

@@ -1,7 +1,7 @@
-"""The suites of scripts/test that are not programs of their own: ctest, unittest, format, tidy.
+"""The suites of scripts/test that are not separate programs: ctest, unittest, format, tidy.
 
-Each prints what failed, and ends with the line "N passed, N failed" that scripts/test adds up.
-Exit code 0 when nothing failed and something ran, otherwise 1.
+Each prints its failures and ends with the line "N passed, N failed" that scripts/test adds up.
+Exit code 0 if nothing failed and something ran, otherwise 1.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def close(passed, failed):
 
 
 def count_cases(output, ok):
-    """Test cases in the output of one program: Catch2's or unittest's, otherwise the program."""
+    """(passed, failed) test cases in the output of one program: Catch2's or unittest's; otherwise the program is one case."""
     if match := re.search(r"All tests passed \(.* in (\d+) test cases?\)", output):
         return int(match[1]), 0
     if match := re.search(r"^test cases:\s+(\d+) \|(?:\s+\d+ passed \|)?\s+(\d+) failed", output, re.M):
@@ -45,7 +45,7 @@ def count_cases(output, ok):
 
 
 def run_ctest(preset, label=None):
-    """All tests, or those with this label. One program more at a time than there are cores: that of rsc mostly waits."""
+    """Runs all tests, or those with this label. One more program than cores runs in parallel, since rsc's tests mostly wait."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         said = subprocess.run(["ctest", "--preset", preset, f"-j{CORES + 1}", *(["-L", label] if label else []),
@@ -58,21 +58,21 @@ def run_ctest(preset, label=None):
         ok = case.get("status") == "run"
         output = case.findtext("system-out") or ""
         good, bad = count_cases(output, ok)
-        bad = max(bad, 0 if ok else 1)  # a program that crashed says nothing about its cases
+        bad = max(bad, 0 if ok else 1)  # a program that crashed does not report its cases
         print(f"  {'ok  ' if not bad else 'FAIL'} {case.get('name')} ({good} of {good + bad}, "
               f"{float(case.get('time') or 0):.1f} s)")
         if bad:
             print(output)
         passed, failed = passed + good, failed + bad
-    # How each of them ended: the report does not have the signal of a program that printed nothing.
+    # Prints how each of them ended: the report lacks the signal of a program that printed nothing.
     print(said.rpartition("The following tests FAILED:")[2] if failed else "", end="")
     return close(passed, failed)
 
 
 def run_unittest(place):
-    """`place`: a folder with tests, or one file of it."""
+    """`place`: a folder with tests, or one file in it."""
     end_on_signals()
-    faulthandler.register(signal.SIGTERM, file=sys.stdout, chain=True)  # where a test stands that takes too long
+    faulthandler.register(signal.SIGTERM, file=sys.stdout, chain=True)  # shows where a test hangs
     path = ROOT / place
     folder, pattern = (path, "test*.py") if path.is_dir() else (path.parent, path.name)
     tests = unittest.defaultTestLoader.discover(str(folder), pattern)
@@ -86,11 +86,11 @@ def own_sources(suffixes):
                   if path.suffix in suffixes)
 
 
-FILES_AT_ONCE = 40  # starting clang-format takes longer than what it then does with a file
+FILES_AT_ONCE = 40  # starting clang-format takes longer than checking a file
 
 
 def checked(command, paths):
-    """What the command finds in these files, each by itself when there is something: [(path, what)]."""
+    """What the command finds in these files: [(path, what)]. If it finds something, it checks each file separately."""
     answer = subprocess.run([*command, *map(str, paths)], cwd=ROOT, check=False, text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if answer.returncode == 0:
@@ -102,7 +102,7 @@ def checked(command, paths):
 
 
 def run_format():
-    """clang-format, and for Python pyflakes: what is imported or named in vain."""
+    """clang-format, and pyflakes for Python: unused imports and names."""
     ours = own_sources({".hpp", ".cpp", ".h", ".c"})
     python = own_sources({".py"})
     batches = [(command, paths[i:i + FILES_AT_ONCE])
@@ -116,21 +116,21 @@ def run_format():
 
 
 def compiled_together(path):
-    """The sources behind an entry of compile_commands.json: itself, or what CMake has put together in it."""
+    """The sources of an entry in compile_commands.json: the file itself, or those that CMake has combined in it."""
     if "/Unity/unity_" not in path:
         return [path]
     return re.findall(r'^#include "(.*)"$', Path(path).read_text(), re.M)
 
 
 ON_THE_BOARD = ("vm", "link", "runtime-m4")
-# Sources at a time: the headers are looked at once for all of them. On the board it is the sources that take the time, so
-# they are fewer, and come first: nobody waits for the last ones then.
+# Sources per run: their common headers are then analyzed only once. For the board's code the sources themselves take the time, so
+# a run has fewer, and those runs come first, so that no long one is left at the end.
 TOGETHER, TOGETHER_ON_THE_BOARD = 24, 8
-# How many states of a function the analyzer of clang looks at, at most, without --deep; by itself it looks at 225,000, and
-# takes several times as long. On the host a function that uses up its states has, as a rule, a std::find_if
-# or a std::visit in it, of which all ways through the standard library are followed.
+# The limit on states per function for clang's analyzer, without --deep. Its default is 225,000, which takes several
+# times as long. On the host, a function that reaches the limit usually contains a std::find_if
+# or a std::visit, and the analyzer follows all its paths through the standard library.
 STATES_ON_THE_HOST, STATES_ON_THE_BOARD = 5_000, 20_000
-GCC_ALONE = ("-fno-tree-loop-distribute-patterns", "--param=")  # begin options that clang takes for errors
+GCC_ALONE = ("-fno-tree-loop-distribute-patterns", "--param=")  # prefixes of options that clang rejects
 
 
 def starts_with(source, folders):
@@ -138,8 +138,8 @@ def starts_with(source, folders):
 
 
 def product_batches(preset):
-    """What the preset compiles of the product, sources with the same flags together: [(flags, sources)], those that take
-    longest first. What is compiled more than once is there once."""
+    """The product's sources that the preset compiles, grouped by flags: [(flags, sources)], the slowest first. A source that
+    is compiled more than once appears once."""
     product = [folder for folder in OURS if folder not in ("tests", "bench")]
     batches, seen = [], set()
     for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):
@@ -162,9 +162,9 @@ def product_batches(preset):
 
 
 def run_tidy(preset, deep):
-    """clang-tidy over the product; `deep`: with no limit of ours to what the analyzer looks at. Much of its time goes
-    into what the headers of the libraries declare, so sources are put one behind the other (included, the analyzer
-    would leave them out), and halved where something is found, down to the file: then the answer names its line."""
+    """clang-tidy over the product; `deep`: with the analyzer's own limits. Library headers take much of its time, so several
+    sources are concatenated into one file (the analyzer would skip included ones). If something is found, the batch is halved
+    until a single file is left: the answer then names its line."""
     batches = product_batches(preset)
     count = sum(len(sources) for _, sources in batches)
 

@@ -1,7 +1,7 @@
-"""A serial line of a given speed between rsc and the board in QEMU, which itself paces nothing.
+"""A serial line of a given speed between rsc and the board in QEMU, which does not simulate the speed itself.
 
-Listens on a Unix socket, passes each byte on after the time it takes on the wire (10 bits a byte), and
-counts the bytes of both directions.
+Listens on a Unix socket, passes each byte on after its time on the wire (10 bits a byte), and
+counts the bytes in both directions.
 """
 
 import select
@@ -13,7 +13,7 @@ from pathlib import Path
 from board import socket_of
 
 BITS_PER_BYTE = 10  # start, 8 data, stop
-CHUNK = 16  # a UART's FIFO; finer than that no time is measured
+CHUNK = 16  # a UART's FIFO; timing is no finer than that
 
 
 class Tap:
@@ -46,8 +46,8 @@ class Tap:
         line_free = time.monotonic()
         try:
             while True:
-                # What waits already goes out right behind the last byte, as from a UART: that this thread woke late is no time
-                # of the line's.
+                # Bytes that were already waiting follow the last byte without a gap, as from a UART: the line was not idle
+                # just because this thread woke late.
                 waits = bool(select.select([source], [], [], 0)[0])
                 data = source.recv(CHUNK)
                 if not data:
@@ -67,7 +67,7 @@ class Tap:
                 pass
 
     def note(self, counter, data):
-        """What has passed, for those who want to know more than how much."""
+        """Called with the bytes that have passed, for subclasses that need more than the count."""
 
     def wire_seconds(self, length):
         return length * self._seconds_per_byte

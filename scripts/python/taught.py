@@ -1,8 +1,8 @@
-"""How often own_words is right (scripts/rates), as a table.
+"""Measures how often own_words is right (scripts/rates), as a table.
 
-Each word is taught with three samples, in a quiet room, and then said in other ways. What people have said they have said once: sox makes
-the samples and the ways of it, faster or slower, higher or lower. What is said is as loud as the others in its loudest 20 ms, with noise
-before, in and behind it."""
+Each word is taught with three samples, in a quiet room, and then said in other ways. There is one recording of each word that a
+person says: sox makes the samples and the variants from it, faster or slower, higher or lower. Each is as loud as the others in
+its loudest 20 ms, with noise before, during and after it."""
 
 import subprocess
 import sys
@@ -16,11 +16,11 @@ from sounds import BYTES, NOISES_DB
 
 PROGRAM = rates.ROOT / "build/companion/bin/robosync-own-words"
 RATE = 16_000
-# As fast, and higher by so many hundredths of a semitone.
+# (tempo, pitch shift in hundredths of a semitone).
 TAUGHT, SAID = ((1, 0), (0.93, -30), (1.07, 30)), ((0.87, 50), (1.13, -50), (0.96, 20))
-LONGEST = 4 * RATE * BYTES  # of what is none of the words
+LONGEST = 4 * RATE * BYTES  # of sounds that are none of the words
 DIGITS = tuple("1 2 3 4 5 6 7 8 9 10 20 30".split())
-# Words of a synthetic voice, and others; speed and pitch of the samples, and of what is said.
+# A synthetic voice's words, and other words; (speed, pitch) of the samples, and of the words that are said.
 SPEAKS = {
     "de": ("hallo komm stopp links rechts singen tanzen schlafen", "eins zwei banane fenster himmel regen schule lampe"),
     "cmn": ("你好 停下 过来 左边 右边 唱歌 跳舞 睡觉", "苹果 电话 学校 朋友 天气 再见 老师 水"),
@@ -51,7 +51,7 @@ def changed(path, tempo, cents):
 
 
 def digits(package):
-    """(word to its recording, the other ones)."""
+    """({word: its recording}, the other recordings)."""
     found = rates.recordings(package, {".wav", ".gsm"})
     folder = next(path.parent for path in found if path.parent.name == "digits" and path.stem == "1")
     words = {path.stem: path for path in found if path.parent == folder and path.stem in DIGITS}
@@ -99,13 +99,13 @@ def write(path, sound):
 
 
 class Robot:
-    """What has been taught the words of a set."""
+    """A file with the words of a set, and the program that listens for them."""
 
     def __init__(self, folder, taught):
         self.folder = folder
         self.file = folder / "my.words"
         self.file.unlink(missing_ok=True)
-        self.names = {word: f"w{i}" for i, word in enumerate(taught)}  # those of a file are ASCII
+        self.names = {word: f"w{i}" for i, word in enumerate(taught)}  # names in the file must be ASCII
         hiss = sounds.noise(12 * RATE * BYTES, RATE)
         for word, samples_of_it in taught.items():
             samples = [write(folder / f"sample{i}.wav", in_noise(sound, hiss, NOISES_DB[0], 0)) for i, sound in enumerate(samples_of_it)]
@@ -126,7 +126,7 @@ def in_noise(sound, hiss, below, place):
 
 
 def counts(robot, one, below, hiss):
-    """(heard, taken for another word, other sounds taken for a word)."""
+    """(heard, mistaken for another word, other sounds mistaken for a word)."""
     hits = wrong = alarms = 0
     for place, (word, sound) in enumerate(one.said):
         heard = robot.hears(in_noise(sound, hiss, below, place))

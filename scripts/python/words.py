@@ -1,7 +1,7 @@
-"""How often command_words is right (scripts/rates), as a table.
+"""Measures how often command_words is right (scripts/rates), as a table.
 
-It hears people, each recording as loud as the others, with pauses between, and listens for as many words as a robot has. A word is heard
-when it is named between its recording's begin and a second after its end; whatever else it names is a false alarm."""
+It hears people in equally loud recordings, with pauses in between, and listens for as many words as a robot has. A word counts as
+heard if it is named between its recording's beginning and a second after its end; anything else it names is a false alarm."""
 
 import re
 import subprocess
@@ -17,14 +17,14 @@ import sounds
 PROGRAM = rates.ROOT / "build/companion/bin/robosync-command-words"
 PAGE = rates.ROOT / "docs/companion.md"
 RATE = 16_000
-LINE_MS = 20  # what it says of itself, once in that time
+LINE_MS = 20  # the period of its output when it hears nothing new
 SENTENCES, WORDS = "pocketsphinx-testdata", "asterisk-core-sounds-en-g722"
 DATA = Path("/usr/share/pocketsphinx/test/data")
-# What it listens for in sentences: words in some of them, and others.
+# The words it listens for in sentences: some are in them, others are not.
 LISTENED_FOR = ("forward ten meters queen clubs seven eight spades hearts four "
                 "hello stop robot dance back left right music goodbye faster").split()
-# What one woman says word by word, as her recordings are called; without words of one syllable, and without "echo", which is also in her
-# sentences.
+# The single words of one woman, by the names of her recordings; without words of one syllable, and without "echo", which is also
+# in her sentences.
 CALLED = {f"digits/day-{i}": word for i, word in enumerate("sunday monday tuesday wednesday thursday friday saturday".split())}
 CALLED |= {f"digits/mon-{i}": word for i, word in enumerate(
     "january february - april - - july august september october november december".split()) if word != "-"}
@@ -36,8 +36,8 @@ USUAL = int(re.search(r"PARAMETER\(strict, \w+, (\d+)", (rates.ROOT / "companion
 
 class Set(NamedTuple):
     name: str
-    words: list  # that it listens for
-    said: dict  # path of each recording: the words in it, in their order
+    words: list  # words that it listens for
+    said: dict  # {path of each recording: the words in it, in order}
 
 
 def of_sentences(which):
@@ -51,7 +51,7 @@ def of_sentences(which):
 
 
 def of_words(which):
-    """What of her says none of the words is there for false alarms."""
+    """Her other recordings, with none of the words, are there for false alarms."""
     paths = rates.recordings(WORDS, {".g722"})
     words = sorted(CALLED.values())[which::2]
     by_path = {path: CALLED.get(f"{path.parent.name}/{path.stem}") for path in paths}
@@ -62,7 +62,7 @@ def of_words(which):
 
 
 def read(path):
-    if path.suffix == ".g722":  # which sox does not know
+    if path.suffix == ".g722":  # sox cannot read it
         done = subprocess.run(["ffmpeg", "-v", "error", "-nostdin", "-f", "g722", "-i", path, "-f", "s16le", "-"], capture_output=True,
                               check=True)
         return sounds.as_loud(done.stdout, RATE)
@@ -71,7 +71,7 @@ def read(path):
 
 
 def named(sound, words, strict):
-    """[(time in seconds, word)] as it names them."""
+    """[(time in seconds, word)]: the words that it names."""
     with tempfile.TemporaryDirectory() as folder:
         file = sounds.write(Path(folder) / "said.wav", sound, RATE)
         done = subprocess.run([PROGRAM, "--source", file, "--no-pace", "--period", str(LINE_MS), "--shown_for", "0.1", "--strict", str(strict),
@@ -81,7 +81,7 @@ def named(sound, words, strict):
         word = line.split()[1]
         if word not in (now, "silence"):
             found.append((time / 1000, word))
-        # What is heard is said at once, and after that block once more.
+        # A heard word is printed immediately, and once more after that block.
         time += LINE_MS * (word == now or word == "silence")
         now = word
     return found

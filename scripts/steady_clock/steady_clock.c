@@ -1,16 +1,16 @@
-// The clock of a QEMU that runs at the pace of the host (LD_PRELOAD, by scripts/python/board.py): one that does not jump.
+// A clock without jumps, for a QEMU that runs in real time (LD_PRELOAD, by scripts/python/board.py).
 //
-// While the emulated processor idles, its time is that of the host's clock. When the host has something else to do, the time
-// that QEMU had to wait would pass for the robot at once, without an instruction executed: its watchdog would reset it, and
-// all of its deadlines would be missed. So between two looks at this clock pass at most MOST_NS: a busy host makes the robot
-// slow, as anything that counts instructions is.
+// While the emulated processor idles, its time follows the host's clock. When the host is busy with something else, the time
+// that QEMU had to wait would pass for the robot in one jump, without an instruction executed: its watchdog would reset it,
+// and it would miss all of its deadlines. So this clock advances by at most MOST_NS between two readings: a busy host makes
+// the robot slow, as it does in all emulation that counts instructions.
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdint.h>
 #include <time.h>
 
-// What a firmware may sleep, which is a period of its safety thread (10 ms), and what it takes to wake QEMU. One that sleeps
-// longer is woken later, by a few looks at the clock.
+// The longest sleep of a firmware, a period of its safety thread (10 ms), plus the time to wake QEMU. A firmware that sleeps
+// longer wakes later, by a few readings of the clock.
 #define MOST_NS INT64_C(12000000)
 #define SECOND_NS INT64_C(1000000000)
 
@@ -28,7 +28,7 @@ static int64_t without_jumps(int64_t host_ns) {
   pthread_mutex_lock(&mutex);
   const int64_t passed = host_ns - last_ns;
   if (last_ns != 0 && passed > MOST_NS) left_out_ns += passed - MOST_NS;
-  if (passed > 0) last_ns = host_ns;  // another thread may have looked later, and be here sooner
+  if (passed > 0) last_ns = host_ns;  // a thread with a later reading may get here first
   const int64_t steady_ns = host_ns - left_out_ns;
   pthread_mutex_unlock(&mutex);
   return steady_ns;

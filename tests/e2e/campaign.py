@@ -1,12 +1,12 @@
 """The safety campaign: faults of all kinds in the shipped firmware, at drawn instants, and a hazard beside each.
 
-A run uploads a program that moves an arm and a motor, makes one fault happen at a drawn place of the firmware, and has a
-hazard come before or after it: a reading that SAFETY trips on, or a stop frame. From the hazard on the board is looked at each
-time that it kicks its watchdog, or comes to its NMI, until the bound is over: by then, and from then on, all outputs
-must be off. At no time may a pin be driven that the program does not have, nor any pin after a reset.
+A run uploads a program that moves an arm and a motor, injects one fault at a random place of the firmware, and causes a
+hazard before or after it: a reading that trips SAFETY, or a stop frame. From the hazard on, the board is inspected each
+time it kicks its watchdog or enters its NMI, until the bound has passed: by then, and from then on, all outputs
+must be off. A pin that the program does not have must never be driven, and after a reset no pin at all.
 
-What happens, and at which place of the firmware, is drawn with the seed and the number of the run, so that one run can be
-done again by itself. Only when bytes of the line come in between is up to the host.
+The seed and the number of the run determine what happens, and at which place of the firmware, so that a single run can be
+repeated. Only the arrival times of bytes on the line depend on the host.
 """
 
 import argparse
@@ -38,8 +38,8 @@ ARM, MOTOR = 3, 4
 LEVEL, HAZARD = 0, 1  # inputs of the sensor
 STALE_MS = 100
 BOUND_MS = STALE_MS + 20  # a sensor that has just measured falls silent; one period of the safety thread, one of the sensor
-STAYS = 3  # looks behind the bound
-MOST_KICKS = 30  # of the watchdog, that a fault waits for its place
+STAYS = 3  # inspections after the bound
+MOST_KICKS = 30  # watchdog kicks for which a fault waits for its place
 STARTS = 5
 ATTEMPTS = 160  # of a quarter of a second: the machine may be busy
 STOP = b"\0" + wire.frame("stop", sequence=255)
@@ -72,7 +72,7 @@ BEHAVIOR thinks PRIORITY 10
   END
 END
 """
-# Where a fault happens: functions that the board comes to all the time. The interpreter runs in the behaviours' threads.
+# Where a fault is injected: functions that the board calls all the time. The interpreter runs in the behaviours' threads.
 PLACES = {"interpreter": INTERPRETER, "sensor": "robosync::layers::Mailboxes::post(",
           "actuator": "robosync::guard::OutputGuard::drive(", "bus": of_the_board("I2c::transfer("),
           "halves of bits": of_the_board("I2c::half_bit() const"),
@@ -83,11 +83,11 @@ GRANT = "robosync::kernel::Kernel::grant("
 
 
 class Violation(AssertionError):
-    """The board did what it must not."""
+    """The board did something forbidden."""
 
 
 class WasReset(Exception):
-    """The board starts again: there is nothing left to go wrong but its outputs."""
+    """The board restarts: only its outputs can still be wrong."""
 
 
 def addresses():
@@ -98,13 +98,13 @@ def addresses():
 
 
 class Control(Debugger):
-    """What the campaign asks of the debugger besides."""
+    """The debugger, with additions for the campaign."""
 
-    stands = False  # at a place where it has stopped
+    stands = False  # the board has stopped at a place
 
     def run_until(self, places):
-        """Lets the board run until it comes to one of {name: address}; gives the name. Where it stands at such a place, it goes
-        off it first, which QEMU would not leave; but a core that sleeps must not be stepped, or its timers stand still."""
+        """Lets the board run until it reaches one of {name: address}; returns the name. If it stands at such a place, it first
+        steps off it, since QEMU would not leave it; but a sleeping core must not be stepped, or its timers stop."""
         if self.stands:
             self._ask("s")
         for address in places.values():
@@ -119,14 +119,14 @@ class Control(Debugger):
         return next(name for name, address in places.items() if address == at)
 
     def __exit__(self, kind, *rest):
-        """A board that hangs answers no more, nor does one that does not come to where it was to stop."""
+        """A board that hangs no longer answers, nor does one that never reached the place where it was to stop."""
         if kind is not None and issubclass(kind, (Violation, TimeoutError)):
             self._socket.close()
         else:
             super().__exit__(kind, *rest)
 
     def flip(self, address, bit):
-        """Whoever runs must be able to read it."""
+        """Does nothing if the running thread cannot read the address."""
         raw = self._ask(f"m{address:x},1")
         if raw.startswith("E"):
             return
@@ -134,13 +134,13 @@ class Control(Debugger):
 
 
 class Line(wire.Line):
-    """Asks again until there is an answer, as rsc does."""
+    """Repeats a request until it is answered, as rsc does."""
 
     def patient(self, name, payload=b"", reply=None):
         self._socket.settimeout(0.25)
         for _ in range(ATTEMPTS):
             try:
-                self.send_raw(b"\0")  # ends what is left of noise
+                self.send_raw(b"\0")  # ends any rest of noise
                 return self.ask(name, payload, reply)
             except (socket.timeout, TimeoutError, ValueError, KeyError):
                 continue
@@ -172,8 +172,8 @@ class Run:
         self.hazard = self.random.choice(("reading", "reading", "stop"))
         self.hazard_first = self.random.random() < 0.5
         self.gdb = None
-        self.told = []  # for who reads of a violation
-        self.since = None  # where the clock stood when the hazard came
+        self.told = []  # for the report of a violation
+        self.since = None  # the clock's count at the hazard
 
     def say(self, what):
         self.told.append(what)
@@ -189,7 +189,7 @@ class Run:
             self.look_behind_a_reset()
 
     def look_behind_a_reset(self):
-        """Without the debugger: QEMU's watchdog strikes too early when one is there while the board starts."""
+        """Works without the debugger: with one attached, QEMU's watchdog fires too early while the board starts."""
         self.say("reset")
         self.robot.line.patient("get_status", reply="status")
         for _ in range(5 * STAYS):
@@ -197,7 +197,7 @@ class Run:
                 raise Violation(f"driven after a reset: {driven}")
 
     def come(self):
-        """The hazard. That of a stop begins when its last byte has come, unless the board fails before."""
+        """Causes the hazard. For a stop, it begins when the last byte has arrived, unless the board fails before."""
         self.say(f"hazard: {self.hazard}")
         if self.hazard == "reading":
             self.robot.board.set_touch(9, HAZARD)
@@ -207,7 +207,7 @@ class Run:
         self.since = self.robot.clock()
 
     def await_one_of(self, *names):
-        """Which one came. The board must not hang so that none of them does."""
+        """Returns which one came. A board that hangs and reaches none of them is a violation."""
         try:
             came = self.gdb.run_until({name: self.robot.at[name] for name in names})
         except socket.timeout:
@@ -239,7 +239,8 @@ class Run:
     # --- faults ---
 
     def to(self, place, at_most=30):
-        """A drawn time that the board comes to the place, but not for ever: halted actuators do not. False when it fails before."""
+        """Waits until the board has reached the place a random number of times, but not for ever: halted actuators never do.
+        False if the board fails before."""
         times, kicks = self.random.randint(1, at_most), 0
         while times > 0 and kicks < MOST_KICKS:
             came = self.await_one_of(place, "kick", "nmi", "reset")
@@ -253,7 +254,7 @@ class Run:
         return True
 
     def to_behavior(self):
-        """In the thread of a behaviour, which may not read what is the kernel's."""
+        """Stops in a behaviour's thread, recognized because it may not read the kernel's memory."""
         skipped = self.random.randint(0, 12)
         for _ in range(200):
             if self.await_one_of("interpreter", "nmi", "reset") != "interpreter":
@@ -360,7 +361,7 @@ class Robot:
         return begin, size
 
     def words(self, address, count):
-        """Of the memory, whoever runs."""
+        """Words of the memory, even while the firmware runs."""
         said = self.board.qmp.command("human-monitor-command", **{"command-line": f"xp /{count}xw {address:#x}"})
         return [int(word, 16) for word in re.findall(r"0x([0-9a-f]{8})\b", said)]
 
@@ -371,7 +372,7 @@ class Robot:
         return self.words(self.at["pulses"], PINS)
 
     def begin(self):
-        """The program runs, all is well, and both move."""
+        """Starts the program without a hazard, and waits until both actuators move."""
         for channel in (LEVEL, HAZARD):
             self.board.set_touch(1, channel)
         for _ in self.line.upload(self.image):
@@ -388,7 +389,7 @@ class Robot:
 
 
 def start(seed, folder):
-    """A robot. Where the machine is so busy that QEMU's watchdog resets the board under the debugger, another one."""
+    """Starts a robot. If the machine is so busy that QEMU's watchdog resets the board under the debugger, tries another one."""
     for _ in range(STARTS - 1):
         try:
             return Robot(seed, folder)
@@ -398,7 +399,7 @@ def start(seed, folder):
 
 
 def campaign(runs, seed, first=0, show=lambda *_: None):
-    """[(number of the run, what was done, what went wrong)] of the runs that went wrong. A board that did wrong is put away."""
+    """[(number of the run, fault, what was done, what went wrong)] of the failed runs. A violation replaces the board."""
     wrong, robot = [], None
     with tempfile.TemporaryDirectory(prefix="robosync-campaign-") as folder:
         try:

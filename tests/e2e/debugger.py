@@ -1,6 +1,6 @@
-"""QEMU's debugger port: stops the board at an instruction, and changes what a register holds.
+"""QEMU's debugger port: stops the board at an instruction, and changes registers.
 
-So a fault can be made to happen in the firmware as it is shipped, which has no hook for that.
+This injects faults into the shipped firmware, which has no hooks for that.
 """
 
 import re
@@ -15,14 +15,14 @@ from support import RobotTest
 PATIENCE = 20
 CONNECTED, AT_BREAKPOINT = "T02", "T05"
 LINK_REGISTER, PC, XPSR = 14, 15, 25
-END_OF_INTERRUPT = 0xFFFF_FFE0  # and up: no place of code
+END_OF_INTERRUPT = 0xFFFF_FFE0  # and up: EXC_RETURN values, not addresses
 MOST_STEPS = 4000
 INTERPRETER = "robosync::vm::run("  # (machine, code, progress)
 IN_SAFETY = "robosync::Runtime::look_at_rules()"
 
 
 class Debugger:
-    """Connecting stops the board; the end of the `with` block lets it run on."""
+    """Connecting stops the board; the end of the `with` block lets it continue."""
 
     def __init__(self, path):
         deadline = time.monotonic() + PATIENCE
@@ -32,7 +32,7 @@ class Debugger:
         self._socket.settimeout(PATIENCE)
         self._socket.connect(str(path))
         self._received = b""
-        self._ask("qXfer:features:read:target.xml:0,100")  # else QEMU sets no single register
+        self._ask("qXfer:features:read:target.xml:0,100")  # without this QEMU cannot set a single register
 
     def __enter__(self):
         return self
@@ -42,11 +42,11 @@ class Debugger:
         self._socket.close()
 
     def leave(self):
-        """The board is no more."""
+        """Call it when the board has ended."""
         self._socket.close()
 
     def run_to(self, address, meanwhile):
-        """Lets the board run until it comes to `address`; meanwhile() sees to it that it does."""
+        """Lets the board run until it reaches `address`; meanwhile() makes it do so."""
         self.stop_at(address)
         self._send("c")
         meanwhile()
@@ -56,32 +56,32 @@ class Debugger:
         self._expect_ok(f"z0,{address:x},2")
 
     def stop_at(self, address):
-        """Each time, from now on."""
+        """From now on, stops each time the board reaches the address."""
         self._expect_ok(f"Z0,{address:x},2")
 
     def go_on(self):
-        """To the next place at which it shall stop; False when it has stopped for another reason."""
+        """Runs to the next stop_at() address; False if the board stopped for another reason."""
         self._send("c")
         return self._receive().startswith(AT_BREAKPOINT)
 
     def register_at(self, address, number, times):
-        """What the register holds each time that the board comes to `address`."""
+        """The register's value each time the board reaches `address`."""
         found = []
         for _ in range(times):
             self.run_to(address, lambda: None)
             found.append(self.register(number))
-            self._ask("s")  # off the place, or the board would never leave it
+            self._ask("s")  # steps off the address, or the board would never leave it
         return found
 
     def step(self):
         self._ask("s")
 
     def steps_to_return(self, reads=None):
-        """How many instructions until the function or interrupt that has just begun returns. `reads` says what the ones that read
-        registers of a chip read, which QEMU has not: {address: (register, value)}."""
+        """The number of instructions until the function or interrupt that has just begun returns. `reads` gives the results of
+        instructions that read a chip's registers, which QEMU does not have: {address: (register, value)}."""
         back, mode, steps = self.register(LINK_REGISTER), self.mode(), 0
         end = back & ~1
-        # Where an interrupt ends the core takes its return out of what was pushed, or another interrupt begins.
+        # At the end of an interrupt the core returns to the stacked address, or another interrupt begins.
         while (at := self.register(PC)) != end and (back < END_OF_INTERRUPT or self.mode() == mode):
             self.step()
             if reads and at in reads:
@@ -92,14 +92,14 @@ class Debugger:
         return steps
 
     def mode(self):
-        """Which exception is handled; 0: none."""
+        """The active exception; 0: none."""
         return self.register(XPSR) & 0x1FF
 
     def register(self, number):
         return int.from_bytes(bytes.fromhex(self._ask(f"p{number:x}")), "little")
 
     def core(self):
-        """What r0 to r15 hold, in one question."""
+        """r0 to r15, in one request."""
         raw = bytes.fromhex(self._ask("g")[:8 * 16])
         return [int.from_bytes(raw[i:i + 4], "little") for i in range(0, len(raw), 4)]
 
@@ -110,7 +110,7 @@ class Debugger:
         self._expect_ok(f"M{at:x},{len(data):x}:{data.hex()}")
 
     def read_words(self, address, count):
-        """None while a thread runs that may not read them: QEMU asks the MPU."""
+        """None while a thread runs that may not read them: QEMU checks with the MPU."""
         answer = self._ask(f"m{address:x},{4 * count:x}")
         if answer.startswith("E"):
             return None
@@ -131,7 +131,7 @@ class Debugger:
         self._socket.sendall(b"$" + body + b"#" + f"{sum(body) % 256:02x}".encode())
 
     def _receive(self):
-        """The next packet, acknowledged. That connecting has stopped the board is no news."""
+        """The next packet, acknowledged. Skips the report that connecting has stopped the board."""
         while (packet := self._next()).startswith(CONNECTED):
             pass
         return packet

@@ -1,4 +1,4 @@
-"""The examples, and readings drawn for each from its robot.json."""
+"""The examples, and random readings for each, from its robot.json."""
 
 import json
 import random
@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
-MOST_COUNTED = 8  # more than an example tells apart
+MOST_COUNTED = 8  # more than an example distinguishes
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
 from board import NAME  # noqa: E402
@@ -21,8 +21,8 @@ def folders():
 
 
 def config(folder):
-    """Its robot.json with virtual sensors in place of real ones, so that the board can be fed; on another board than its
-    own, with virtual actuators in the place of that board's parts."""
+    """Its robot.json with virtual sensors instead of real ones, so that the board can be fed. On a board other than the
+    example's, that board's parts are replaced by virtual actuators, too."""
     robot = json.loads((folder / "robot.json").read_text())
     robot = without_parts(robot, ("sensors",) if robot.get("board") == NAME else ("sensors", "actuators"))
     for sensor in robot["sensors"]:
@@ -37,12 +37,12 @@ def config(folder):
 
 
 def _number(value):
-    """A number of robot.json without its unit, which is the channel's own."""
+    """A number from robot.json without its unit, which is the channel's."""
     return value if isinstance(value, (int, float)) else float(re.match(r"-?[0-9.]+", value)[0])
 
 
 def _companion():
-    """The channels of each module that runs on a companion computer: NAME to its range and unit, or to its first word."""
+    """The channels of each module that runs on a companion computer: {NAME: its range and unit, or its first word}."""
     text = (ROOT / "companion/modules.def").read_text()
     units = dict(re.findall(r'^DIMENSION\((\w+), *"([^"]*)"', (ROOT / "vm/dimensions.def").read_text(), re.M))
     modules = {}
@@ -58,7 +58,7 @@ def _companion():
 
 
 def _heard(folder):
-    """Of the algorithms on a companion computer, as _channels()."""
+    """The same as _channels(), for the algorithms on a companion computer."""
     program = (folder / "robot.rsl").read_text().lower()
     modules, found = _companion(), {}
     for algorithm in config(folder).get("algorithms", []):
@@ -73,12 +73,12 @@ def _heard(folder):
 
 
 def _counted(low, high, unit):
-    """The first few and the last of what is counted or numbered; nothing of what is measured."""
+    """The first few values and the last for channels that count or number; none for those that measure."""
     return [] if unit else [*range(int(low), int(low) + MOST_COUNTED), int(high)]
 
 
 def _channels(folder):
-    """NAME.CHANNEL to its lowest and highest value, its words and its unit, for all that is read."""
+    """{NAME.CHANNEL: (lowest value, highest value, words, unit)} for everything that the program reads."""
     program = (folder / "robot.rsl").read_text().lower()
     found = _heard(folder)
     for sensor in config(folder)["sensors"]:
@@ -92,7 +92,7 @@ def _channels(folder):
 
 
 def drawn(folder, seed, count=30):
-    """`count` readings, most of them near the last one of their channel, some anywhere."""
+    """`count` random readings, most of them near the last one of their channel, some anywhere."""
     random_ = random.Random(seed)
     channels = _channels(folder)
     last = {name: low for name, (low, _, _, _) in channels.items()}

@@ -1,5 +1,5 @@
-"""What the shipped firmware of the B-L475E-IOT01A does with those parts of its chip that QEMU does not have: where they stay silent,
-and where the test plays them. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
+"""Tests how the shipped firmware of the B-L475E-IOT01A uses the parts of its chip that QEMU does not have: some stay silent, and
+the test plays others. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
 
 import contextlib
 import json
@@ -28,11 +28,11 @@ from counting import symbols  # noqa: E402
 
 UPLOADS = 3
 PATIENCE = 20
-# What the masters of I2C and DMA1 are told.
+# Registers of the I2C masters and of DMA1.
 TRANSFER, COUNT_4, MEMORY_4, COUNT_5, MEMORY_5 = ("I2C2", 0x04), ("DMA1", 0x48), ("DMA1", 0x50), ("DMA1", 0x5C), ("DMA1", 0x64)
 CORE, BUS_INTERRUPT = "/machine/soc/armv7m", 33
 ADDRESS, LEVEL = 0x6A, 0x12
-WROTE, STOPPED = 1 << 6, 1 << 5  # of the master's state
+WROTE, STOPPED = 1 << 6, 1 << 5  # bits of the master's state
 BOTH_BUSES = {"board": "b-l475e-iot01a", "actuators": [{"name": "arm", "type": "PWM", "pin": 3, "device": "servo"}],
               "sensors": [{"name": f"bus{bus}", "type": "I2C", "bus": bus, "address": hex(ADDRESS), "device": "i2c_register",
                            "channels": {"LEVEL": {"input": LEVEL, "rate": "50Hz"}}} for bus in range(2)]}
@@ -48,8 +48,8 @@ DO LOG "high"
 END
 """
 LOOSEST, CALLS = 1.3, 20
-READS, STOPS_BEHIND = 1 << 10, 1 << 25  # of what the master is told
-# The motion sensor on that bus: its registers out of a loss of power, what it is told, and where it measures turning about Z.
+READS, STOPS_BEHIND = 1 << 10, 1 << 25  # bits of the master's commands
+# The motion sensor on that bus: its registers after power-up, the writes to it, and the register of the rotation about Z.
 LAMP, LIT_US, PWM_WRITE = 13, 14_000, "robosync::boards::stm32l4::Board::pwm_write("
 MOTION = {"board": "b-l475e-iot01a", "actuators": [{"name": "lamp", "type": "PWM", "pin": LAMP, "device": "pwm"}],
           "sensors": [{"name": "motion", "device": "motion"}]}
@@ -57,7 +57,7 @@ TURNED = "WHEN motion TURN_Z > 90deg/s MARGIN 10deg/s\nDO RUN lamp TO 70%\nEND\n
 WITHOUT_POWER = {0x0F: 0x6A, 0x12: 0x04}
 SETTING, TOLD, OUTPUT, OUTPUTS, TURN_Z, Z, COUNTS_EACH = 0x10, bytes((0x58, 0x54, 0x44)), 0x22, 12, 0x26, 0x2C, 1 / 0.0175
 WHOLE = {SETTING: len(TOLD), OUTPUT: OUTPUTS}
-# The distance sensor there, and the one of the air, whose registers go on where bit 7 is set.
+# The distance sensor there, and the air sensor, whose register addresses auto-increment when bit 7 is set.
 FRONT, FRONT_ADDRESS, FRONT_WHOLE, XSHUT = "front", 0x29, {0xC0: 1, 0x13: 13}, 6
 AIR, AIR_ADDRESS, GOES_ON, AIR_WHOLE = "air", 0x5F, 0x80, {0x0F: 1, 0xA0: 12, 0xB0: 16}
 PORT_C = 0x4800_0800
@@ -68,7 +68,7 @@ DAMP = f"WHEN {AIR} HUMIDITY > 60% MARGIN 2%\nDO RUN lamp TO 70%\nEND\n"
 COSTS = ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*(\d+),", re.M)
 
-# A panel of lights at D11, PA7: what DMA1 is told for it, the function of the pin, and what that takes.
+# A panel of lights at D11, PA7: its registers in DMA1, the function of the pin, and its cost.
 PANEL = {"board": "b-l475e-iot01a", "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
          "actuators": [{"name": "face", "pin": 11, "device": "ws2812", "color": "blue", "brightness": 20}]}
 CHANGES = "WHEN near X > 10 DO SHOW face happy END\nEVERY 100ms DO SHOW face heart FOR 30ms\nTHEN\nSHOW face happy END\n"
@@ -95,7 +95,7 @@ class WithFlash:
         self.addCleanup(self.end_flash)
 
     def upload(self, program, *arguments):
-        """The debugger holds the board up, on a busy machine for longer than rsc waits."""
+        """Tries several times: the debugger delays the board, on a busy machine for longer than rsc waits."""
         for _ in range(UPLOADS - 1):
             with contextlib.suppress(rsc.RscError):
                 return super().upload(program, *arguments)
@@ -109,7 +109,7 @@ class WithFlash:
 
 
 class KeptInFlash(WithFlash, test_store.Numbers):
-    """Numbers and programs, as on the reference board."""
+    """Numbers and programs are kept, as on the reference board."""
 
     test_back_and_forth = test_store.Store.test_back_and_forth
 
@@ -120,7 +120,7 @@ class KeptInFlash(WithFlash, test_store.Numbers):
         for round_ in range(4):
             with self.subTest(round=round_):
                 self.upload(images[round_ % 2])
-                time.sleep(draw.random() * 0.2)  # some seconds of the board's
+                time.sleep(draw.random() * 0.2)  # some seconds of the board's time
                 self.board.cut_power()
                 self.switch_on()
                 self.await_kept("kept")
@@ -154,7 +154,7 @@ class Bus(DebuggedTest):
         return program, "--config", config
 
     def told(self, place):
-        """The values that were written there, so far."""
+        """The values that have been written to that place."""
         return unimplemented.told(self.folder, place)
 
     def test_nobody_on_it_is_told_trips_safety_and_holds_nobody_up(self):
@@ -172,7 +172,7 @@ class Bus(DebuggedTest):
         self.assertTrue(all(device["failed"] > 0 for device in said["buses"]["devices"]))
 
     def test_what_it_is_told_and_what_that_costs(self):
-        """The test is the master and its DMA: it says that all was written, puts what was read where it shall be, and says stop."""
+        """The test plays the master and its DMA: it reports that everything was written, stores the read bytes and reports stop."""
         self.upload(*self.begin())
         wires = pins.Pins(self.folder)
         self.addCleanup(wires.close)
@@ -200,7 +200,7 @@ class Bus(DebuggedTest):
         self.assertLessEqual(said, LOOSEST * measured)
 
     def test_the_motion_sensor_on_the_board_is_told_and_read_and_what_that_costs(self):
-        """The test is the master, its DMA, and the sensor's registers."""
+        """The test plays the master, its DMA, and the sensor's registers."""
         config, program = self.folder / "motion.json", self.folder / "motion.rsl"
         config.write_text(json.dumps(MOTION))
         program.write_text(TURNED)
@@ -234,7 +234,7 @@ class Bus(DebuggedTest):
         self.assertEqual([debugger.register(1), debugger.register(2)], [LAMP, LIT_US])
 
     def assert_costs(self, transfers, size):
-        """What it tells the part with a sample is asked for while it takes what has come."""
+        """The writes to the part for a sample are asked ahead while the driver takes the bytes that have come."""
         costs = {name: int(value) for name, value in COST_OF_BUS.findall(COSTS.read_text())}
         said = transfers * (costs["i2c_ask"] + costs["i2c_transfer"]) + size * costs["i2c_byte"]
         print(f"\n  asking and taking: {max(self.asked)} and {max(self.taken)}, said {said}")
@@ -242,7 +242,7 @@ class Bus(DebuggedTest):
         self.assertEqual((self.status()["safety_late_us"], self.status()["faults"]), (0, 0))
 
     def test_the_distance_sensor_on_the_board_is_awake_and_has_it_measure_with_each_sample(self):
-        """The test is the master, its DMA, and the sensor's registers."""
+        """The test plays the master, its DMA, and the sensor's registers."""
         wires, registers = self.start(DISTANCE, NEAR), bytearray(256)
         registers[0xC0] = 0xEE
         with self.debugger() as debugger:
@@ -273,7 +273,7 @@ class Bus(DebuggedTest):
         self.assert_costs(4, 41)
 
     def turn(self, wires, registers, *speeds):
-        """What the driver gives of each, while the board lies still."""
+        """The driver's results for each speed, while the board lies still."""
         registers[Z:Z + 2] = round(1 / 0.000122).to_bytes(2, "little")
         given = []
         with self.debugger() as debugger:
@@ -281,12 +281,12 @@ class Bus(DebuggedTest):
             for speed in speeds:
                 registers[TURN_Z:TURN_Z + 2] = round(speed * COUNTS_EACH).to_bytes(2, "little", signed=True)
                 given.append(self.reading(debugger, wires, registers, "lsm6dsl", ADDRESS, WHOLE))
-            self.assert_lamp_is_lit(debugger)  # which the program makes of the last one
+            self.assert_lamp_is_lit(debugger)  # the program's response to the last one
         return [round(count / COUNTS_EACH) for count in given]
 
     def reading(self, debugger, wires, registers, name, address, whole, goes_on=0):
-        """The next one. Of calls that ask, instructions are counted with the interrupts that come of it; of the others without: what they
-        tell the sensor is asked then."""
+        """The next reading. For calls that ask ahead, instructions are counted with the interrupts that they cause; for the others
+        without, since their writes to the sensor are asked ahead in that time."""
         driver = next(at for symbol, at in symbols(FIRMWARE).items() if symbol.startswith(f"robosync::drivers::{name}::read("))
         for _ in range(CALLS):
             debugger.run_to(driver, lambda: None)
@@ -304,8 +304,8 @@ class Bus(DebuggedTest):
         return self.fail("nothing is read")
 
     def play(self, debugger, wires, registers, address, goes_on):
-        """All that the master was told comes to pass: what the interrupts took, and {register: how many from there on} that were read.
-        `goes_on` is what the register's number has besides."""
+        """Performs all commands of the master. Returns the interrupts' instructions, and {register: bytes read from there on}.
+        `goes_on` holds the further bits of a register's address."""
         handler, (state, where), steps, place, found = symbols(FIRMWARE)["OwnBus_Handler"], self.read_of_state(), 0, None, {}
         while self.played < len(told := self.told(TRANSFER)):
             order = told[self.played]
@@ -324,7 +324,7 @@ class Bus(DebuggedTest):
         return steps, found
 
     def ask_own_bus(self, debugger, driver):
-        """Instructions of the driver's next call that begins a transfer there."""
+        """The instructions of the driver's next call that begins a transfer on that bus."""
         before = len(self.told(TRANSFER))
         for _ in range(CALLS):
             debugger.run_to(driver, lambda: None)
@@ -334,7 +334,7 @@ class Bus(DebuggedTest):
         return self.fail("it is asked no more")
 
     def first_answer(self, debugger, driver):
-        """What the driver gives at its next call that gives something."""
+        """The driver's next result."""
         for _ in range(CALLS):
             debugger.run_to(driver, lambda: None)
             place = debugger.register(3)
@@ -344,7 +344,7 @@ class Bus(DebuggedTest):
         return self.fail("nothing is read")
 
     def read_of_state(self):
-        """Where the interrupt's handler reads the master's state, and into which register."""
+        """The address where the interrupt handler reads the master's state, and the register it reads into."""
         place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::stm32l4::I2cMaster::on_interrupt("))
         said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", f"--stop-address={(place & ~1) + 64:#x}",
                                FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
@@ -403,7 +403,7 @@ class Panel(DebuggedTest):
 class WithoutFlash(RobotTest):
     def test_a_flash_that_does_nothing_is_a_store_that_does_not_answer(self):
         said = self.upload(PROGRAMS / "priorities.rsl", "--config", self.for_board(PROGRAMS / "robot.json"), "--trial", "1s")
-        self.assertIn("not kept: this board has no store that answers; after a reset the robot has no program", said)
+        self.assertIn("not kept: this board has no working store; after a reset the robot has no program", said)
         told = rsc.info(self.board.port)
         self.assertEqual((told["kept"]["state"], told["status"]["faults"], told["status"]["safety_late_us"]), ("no_store", 0, 0))
         self.assertIsNotNone(told["board"]["program"])
@@ -429,7 +429,7 @@ class Damage(DebuggedTest):
 
 
 class NoOwner(RobotTest):
-    icount = REAL_TIME  # of the minute in which it may be paired
+    icount = REAL_TIME  # for the minute in which it can be paired
 
     def test_who_would_be_its_owner_is_told(self):
         key = self.folder / "key"

@@ -1,5 +1,5 @@
-"""What the shipped firmware of the micro:bit V2 tells those parts of its chip that QEMU does not have: QEMU writes that
-down. Run with ROBOSYNC_BOARD=microbit-v2."""
+"""Tests what the shipped firmware of the micro:bit V2 writes to the parts of its chip that QEMU does not have: QEMU logs it.
+Run with ROBOSYNC_BOARD=microbit-v2."""
 
 import json
 import random
@@ -30,7 +30,7 @@ NOBODY = 0x8000_0000
 P0_02, P0_03 = 2, 3  # the rings 0 and 1
 WATCHDOG_START, WATCHDOG_RELOAD, WATCHDOG_KICK = 0x4001_0000, 0x4001_0504, 0x4001_0600
 KICKED = 0x6E52_4635
-A_TENTH = 3275  # counts of 32,768 Hz, but one
+A_TENTH = 3275  # counts of 32,768 Hz, minus one
 ARMS = """{
   "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
   "actuators": [
@@ -47,13 +47,13 @@ END
 # The lights' pins of port 0: QEMU has no second port, where column 4 is.
 ROWS, COLUMNS = (21, 22, 15, 24, 19), {0: 28, 1: 11, 2: 31, 4: 30}
 P0_OUT = 0x5000_0504
-# Of the speaker: PSEL.OUT, and where the module fetches its values, the last of which is the period in microseconds.
+# The speaker: PSEL.OUT, and the address from which the module fetches its values; the last is the period in microseconds.
 PIN_OF_SPEAKER, VALUES_OF_SPEAKER, P0_00 = 0x4002_2560, 0x4002_2520, 0
 HORN = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "beeper"}]}
 SOUND = "robosync::boards::microbit::Board::sound("
 NOTES = re.compile(r"NOTE\((\d+),")
-# Of the serial line to a sound player: PSEL.TXD, BAUDRATE, TXD.PTR and TXD.MAXCNT of UARTE1, and what it is told.
+# The serial line to a sound player: PSEL.TXD, BAUDRATE, TXD.PTR and TXD.MAXCNT of UARTE1, and its commands.
 UARTE1 = 0x4002_8000
 PLAYER = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
           "actuators": [{"name": "face", "type": "UART", "device": "dfplayer", "sounds": ["one.wav", "two.wav"]}]}
@@ -62,20 +62,20 @@ P0_13, AT_9600 = 13, 0x0027_5000  # pin 15
 PLAYS_TWO = bytes.fromhex("7eff0612000002fee7ef")
 STOPS = bytes.fromhex("7eff0616000000fee5ef")
 TELL = "robosync::guard::OutputGuard::tell("
-# Of the SPI master that tells a panel its picture: START, ENABLE, PSEL.MOSI, FREQUENCY, TXD.PTR and TXD.MAXCNT of SPIM2.
+# The SPI master that sends a panel its picture: START, ENABLE, PSEL.MOSI, FREQUENCY, TXD.PTR and TXD.MAXCNT of SPIM2.
 SPIM2, LIGHTS, RED = 0x4002_3000, 64, 0x33_0000
 PANEL = {"sensors": PLAYER["sensors"],
          "actuators": [{"name": "face", "pin": 0, "device": "ws2812", "size": "8x8", "zigzag": True, "color": "red", "brightness": 20}]}
 PANEL_START, PANEL_ENABLE, PANEL_PIN, PANEL_SPEED, PANEL_FROM, PANEL_COUNT = (SPIM2 + at for at in (0x10, 0x500, 0x50C, 0x524, 0x544, 0x548))
 AT_4MHZ, DARK = 0x4000_0000, ["....."] * 5
-# Those that differ most.
+# The two pictures that differ most.
 CHANGES = "EVERY 100ms DO SHOW face heart FOR 30ms\nTHEN\nSHOW face happy END\n"
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "lights"}]}
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
 HAPPY = [".....", ".#.#.", ".....", "#...#", ".###."]
 LOOKS = 4000
-# The bus of what is on the board: QEMU has a stub of it there, which keeps what it is told, and has always just stopped.
+# The bus of the parts on the board: QEMU has a stub of it, which stores what is written and always reports that it has stopped.
 BUS_WRITE = re.compile(r"microbit_i2c_write: 0x([0-9a-f]+) <- 0x([0-9a-f]+)")
 TWIM0, BUS_INTERRUPT, CORE = 0x4000_3000, 3, "/machine/nrf51/armv6m"
 ENABLE, CLOCK_PIN, DATA_PIN, ADDRESS = (TWIM0 + at for at in (0x500, 0x508, 0x50C, 0x588))
@@ -86,12 +86,12 @@ WAKE = bytes((0xA0, 0x67, 0, 0, 0x90))
 ASLEEP = bytes((0x07, *13 * (0,)))
 AWAKE = bytes((*WAKE[1:], 0, 0, 0, 8))  # and two bytes for each axis
 REGISTERS = len(ASLEEP)
-# A display on that bus; what is sent to it (drivers/served.hpp), and how its driver draws a picture.
+# A display on that bus; the bytes that are sent to it (drivers/served.hpp), and how its driver draws a picture.
 OLED = {"sensors": FACE["sensors"],
         "actuators": [{"name": "face", "type": "I2C", "device": "ssd1306", "bus": 1, "address": "0x3c"}]}
 OLED_ADDRESS, EXCHANGE = 0x3C, "robosync::drivers::exchange("
 COMMAND, DATA, PAGE_COLUMNS, PAGES, LEFT, SIDE = 0x80, 0x40, 128, 8, 36, 12
-TRANSFERS = 400  # that are looked at, at most: a round has 98
+TRANSFERS = 400  # at most this many are examined; a round has 98
 COST_OF_DRIVER = r"(?m)^ACTUATOR_DRIVER\({},\s*(\d+),\s*(\d+),\s*(\d+),"
 COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
@@ -136,10 +136,10 @@ RUNS_IN_RAM = 0x2000_0000
 
 
 class KeptInFlash(test_store.Numbers):
-    """The numbers, as on the reference board; and programs, when the power goes at a part of an erasing, or at a word."""
+    """Numbers are kept, as on the reference board; so are programs if the power is cut at a part of an erase, or at a word."""
 
     def cut(self, image, place, times):
-        """While the image is written, when the firmware comes there for the so-many-th time."""
+        """Cuts the power while the image is written, when the firmware reaches the place for the `times`-th time."""
         gdb = self.folder / f"gdb{times}"
         self.power_cycle("-gdb", f"unix:{gdb},server=on,wait=off")
         self.await_kept("kept")
@@ -159,7 +159,7 @@ class KeptInFlash(test_store.Numbers):
         places = [next(at for name, at in symbols(FIRMWARE).items() if name.startswith(what)) for what in (ERASES, PROGRAMS)]
         draw = random.Random(1)
         for place in 2 * places:
-            # Of the image, or of the record behind it: two pages in 45 parts, and some words.
+            # In the image, or in the record after it: two pages of 45 parts each, and some words.
             with self.subTest(place=place, times=(times := draw.randrange(85))):
                 self.cut(other[self.running()], place, times)
                 self.assertIn(self.running(), other)
@@ -182,7 +182,7 @@ class OnMicrobit(DebuggedTest):
         return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
 
     def told(self, address):
-        """The values that were written there, so far."""
+        """The values that have been written to that address."""
         log = self.log.read_text()
         writes = [(int(at, 16) + PERIPHERALS, int(value, 16)) for at, value in WRITE.findall(log)]
         writes += [(int(at, 16) + TWIM0, int(value, 16)) for at, value in BUS_WRITE.findall(log)]
@@ -232,7 +232,7 @@ class OnMicrobit(DebuggedTest):
         self.upload(program, "--config", config)
 
     def seen(self, wires, rows=len(ROWS)):
-        """{row: its lights} of the rows that come to be on, until there are so many."""
+        """{row: its lights} of the rows that are switched on, until `rows` of them have been seen."""
         found = {}
         for _ in range(LOOKS):
             levels = wires.word(P0_OUT)
@@ -272,7 +272,7 @@ class OnMicrobit(DebuggedTest):
             debugger.step()
             heard += debugger.register_at(sound, 1, len(yawn) + 1)
         feeder.join()
-        self.assertEqual(heard, [0, *yawn, 0])  # it begins with silence, and ends with it
+        self.assertEqual(heard, [0, *yawn, 0])  # it begins and ends with silence
         self.await_told(PIN_OF_SPEAKER, NOBODY)
         self.say("feed", "near.X=90")
         self.await_told(PIN_OF_SPEAKER, P0_00)
@@ -316,7 +316,7 @@ class OnMicrobit(DebuggedTest):
         self.await_on_panel(wires, HAPPY)
         told = len(self.told(PANEL_START))
         time.sleep(0.3)
-        self.assertEqual(len(self.told(PANEL_START)), told)  # what does not change is not told again
+        self.assertEqual(len(self.told(PANEL_START)), told)  # an unchanged picture is not sent again
         self.say("stop")
         self.await_on_panel(wires, DARK)
         status = rsc.info(self.board.port)["status"]
@@ -337,7 +337,7 @@ class OnMicrobit(DebuggedTest):
         self.compare_costs(self.calls_of("ws2812_face"))
 
     def counted(self, start, calls=6):
-        """Instructions from there until it returns, of its next calls at most."""
+        """The most instructions of its next `calls` calls, from `start` until it returns."""
         counts = []
         with self.debugger() as debugger:
             for _ in range(calls):
@@ -346,7 +346,7 @@ class OnMicrobit(DebuggedTest):
         return max(counts)
 
     def calls_of(self, driver):
-        """{what: declared} of its calls."""
+        """{call: declared cost} of the driver's calls."""
         said = re.search(COST_OF_DRIVER.format(driver), (ROOT / "vm/drivers.def").read_text()).groups()
         return {f"robosync::drivers::{driver}::{call}(": int(cost) for call, cost in zip(("start", "advance", "release"), said)}
 
@@ -377,13 +377,13 @@ class OnMicrobit(DebuggedTest):
         return wires, next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::drivers::lsm303agr::read("))
 
     def serve(self, debugger, wires, read):
-        """One call of the driver; then the bus says that it is through with what it has been told."""
+        """Runs one call of the driver; then the bus reports that its transfer is over."""
         debugger.run_to(read, lambda: None)
         debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
         wires.interrupt(CORE, BUS_INTERRUPT)
 
     def test_the_accelerometer_is_woken_and_read_and_nobody_waits_for_it(self):
-        """The test is the sensor: it puts what was read where the firmware has told the bus to."""
+        """The test plays the sensor: it stores the bytes at the address that the firmware has given the bus."""
         wires, read = self.begin_motion()
         self.assertEqual([self.told(at)[0] for at in (CLOCK_PIN, DATA_PIN, ADDRESS)], [8, 16, 0x19])
         self.assertEqual((set(self.told(READ_COUNT)), set(self.told(WRITE_COUNT))), ({REGISTERS}, {1}))
@@ -391,7 +391,7 @@ class OnMicrobit(DebuggedTest):
         held = self.status()["safety_late_us"]
         with self.debugger() as debugger:
             for _ in range(2):
-                self.serve(debugger, wires, read)  # nothing stands there yet: it is asleep
+                self.serve(debugger, wires, read)  # nothing is there yet: the sensor is asleep
             place = self.told(READ_TO)[0]
             for _ in range(8):
                 wires.write(place, ASLEEP)
@@ -414,7 +414,8 @@ class OnMicrobit(DebuggedTest):
         self.assertEqual(self.status()["safety_late_us"], held)
 
     def test_a_face_goes_out_to_a_display_on_the_bus(self):
-        """The test is the display: it takes what the bus was told to send, and puts the dots together. Other ways to address them it has not."""
+        """The test plays the display: it collects the bytes that the bus was told to send, and assembles the dots. It supports no
+        other addressing modes."""
         self.begin("SHOW face happy", robot=OLED)
         self.say("feed", "near.X=20")
         wires = pins.Pins(self.folder)
@@ -439,7 +440,7 @@ class OnMicrobit(DebuggedTest):
         self.assertEqual(self.status()["faults"], 0)
 
     def take(self, sent, memory):
-        """The two commands that it is; else none, and what it writes is in {(page, column): eight dots}."""
+        """The two commands in `sent`; if there are none, its data is written to `memory`: {(page, column): eight dots}."""
         commands = []
         while sent and sent[0] == COMMAND:
             commands.append(sent[1])
@@ -454,7 +455,7 @@ class OnMicrobit(DebuggedTest):
         return set()
 
     def lights_of(self, memory):
-        """{(column, row)} of the lights whose dots are all on; where a light is so in part, or one beside the picture is on, none."""
+        """{(column, row)} of the lights whose dots are all on; none if a light is only partly on, or a dot outside the picture is."""
         lit = {(x, 8 * page + bit) for (page, x), dots in memory.items() for bit in range(8) if dots >> bit & 1}
         lights = {((x - LEFT) // SIDE, y // SIDE) for x, y in lit}
         whole = {(LEFT + SIDE * column + x, SIDE * row + y) for column, row in lights for x in range(SIDE) for y in range(SIDE)}
@@ -483,11 +484,11 @@ class OnMicrobit(DebuggedTest):
             self.assertLessEqual(said, 1.25 * measured + 60)
 
     def test_the_watchdog_is_started_once_and_kicked_with_each_check_of_safety(self):
-        self.status()  # it has started
+        self.status()  # waits until it has started
         self.assertEqual((self.told(WATCHDOG_START), self.told(WATCHDOG_RELOAD)), ([1], [A_TENTH]))
         before = len(self.told(WATCHDOG_KICK))
         give_up = time.monotonic() + PATIENCE
-        while True:  # a board whose time runs slowly is asked twice in one period
+        while True:  # on a slow board, two requests may fall into one period
             checks = self.status()["safety_checks"]
             kicks = self.told(WATCHDOG_KICK)
             if len(kicks) > before:

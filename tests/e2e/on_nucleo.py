@@ -1,5 +1,6 @@
-"""What the shipped firmware of the Nucleo-L476RG does with the pins that are its own: its button, its light, and the debugger's
-serial line. QEMU's machine is another board with a chip of the family (docs/boards.md). Run with ROBOSYNC_BOARD=nucleo-l476rg."""
+"""Tests how the shipped firmware of the Nucleo-L476RG uses the pins that only this board has: its button, its light, and the
+debugger's serial line. QEMU's machine is another board with a chip of the same family (docs/boards.md). Run with
+ROBOSYNC_BOARD=nucleo-l476rg."""
 
 import json
 import time
@@ -15,7 +16,7 @@ BUTTON, LIGHT, LIT_US, AT_ONCE = 32, 13, 14_000, 0
 ROBOT = {"board": NAME, "sensors": [{"name": "b1", "device": "user_button"}],
          "actuators": [{"name": "light", "type": "PWM", "pin": LIGHT, "device": "pwm"}]}
 LIGHTS = "WHEN b1 IS pressed\nDO RUN light TO 70%\nELSE STOP light\nEND\n"
-# PA5: its mode, its function, and the first channel of timer 2, which that is.
+# PA5: its mode and its function, which is the first channel of timer 2.
 PORT_A, LINE, FUNCTION, OF_TIMER_2 = 0x4800_0000, 5, 0b10, 1
 PULSE = ("TIM2", 0x34)
 # PA2 and PA3, and PA9, where USART1 is.
@@ -32,7 +33,7 @@ class Pins(RobotTest):
         self.addCleanup(self.wires.close)
 
     def mode(self, bit):
-        """… and function, of a pin of port A."""
+        """Mode and function of a pin of port A."""
         functions = self.wires.word(PORT_A + 0x20 + 4 * (bit // 8))
         return self.wires.word(PORT_A) >> 2 * bit & 3, functions >> 4 * (bit % 8) & 0xF
 

@@ -1,4 +1,4 @@
-"""What a panel of WS2812 would show of the bytes that an SPI master is told to send it."""
+"""Decodes what a panel of WS2812 lights would show for the bytes that an SPI master is told to send."""
 
 CODES = {"microbit-v2": ("10000", "11100"), "b-l475e-iot01a": ("100", "110")}
 SILENCE = 280e-6
@@ -6,7 +6,7 @@ HERTZ = {"microbit-v2": 4e6, "b-l475e-iot01a": 2.5e6}
 
 
 def colors(board, said, lights):
-    """0xRRGGBB of each light, in the order of the chain; None where that is no picture with silence before and behind it."""
+    """0xRRGGBB of each light, in the order of the chain; None if the bytes are not a picture with silence before and after it."""
     codes = {code: str(bit) for bit, code in enumerate(CODES[board])}
     length = len(CODES[board][0])
     bits = "".join(f"{byte:08b}" for byte in said)
@@ -21,7 +21,7 @@ def colors(board, said, lights):
 
 
 def chain(picture, color, side, zigzag):
-    """The same of a picture of five rows of signs, in the midst of so many rows."""
+    """The same for a picture given as five rows of signs, centred on a panel with `side` rows."""
     margin = (side - 5) // 2
     rows = [[0] * side for _ in range(side)]
     for row, signs in enumerate(picture):

@@ -1,4 +1,4 @@
-"""What is wired to the board's input pins: a test gives them their levels, through QEMU's test protocol, while the board runs."""
+"""The board's input pins: a test sets their levels through QEMU's test protocol, while the board runs."""
 
 import socket
 import sys
@@ -10,7 +10,7 @@ from board import BOOT_SECONDS, FIRMWARE, NAME
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
-# Which line of which of QEMU's devices a pin is, by the boards' documents.
+# The line of a QEMU device for each pin, according to the boards' documents.
 LINES = {
     "b-l475e-iot01a": {7: ("/machine/soc/gpioa", 4), 8: ("/machine/soc/gpiob", 2), 9: ("/machine/soc/gpioa", 15),
                        12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
@@ -18,11 +18,11 @@ LINES = {
                       9: ("/machine/soc/gpioc", 7), 12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
     "microbit-v2": {5: ("/machine/nrf51", 14), 11: ("/machine/nrf51", 23)},
 }
-VIRTUAL = range(40, 44)  # of the mps2-an386: bits of a word of its memory
+VIRTUAL = range(40, 44)  # the mps2-an386's inputs: bits of a word of its memory
 
 
 class Pins:
-    """Of a board that was started with arguments(folder)."""
+    """The pins of a board that was started with arguments(folder)."""
 
     def __init__(self, folder):
         self._socket = socket.socket(socket.AF_UNIX)
@@ -58,7 +58,7 @@ class Pins:
         return bytes.fromhex(self._say(f"read {address:#x} {count:#x}").split()[1][2:])
 
     def interrupt(self, controller, line, name="unnamed-gpio-in"):
-        """It is asked for, once."""
+        """Requests the interrupt once."""
         for level in (1, 0):
             self._say(f"set_irq_in {controller} {name} {line} {level}")
 
@@ -80,5 +80,5 @@ def path_in(folder):
 
 
 def arguments(folder):
-    """For QEMU."""
+    """QEMU's options for the test protocol."""
     return ["-qtest", f"unix:{path_in(folder)},server=on,wait=off", "-qtest-log", "none"]

@@ -1,5 +1,5 @@
-"""Plays functions of the shipped firmware through the debugger's port: those of what QEMU has not. So the flash of the
-B-L475E-IOT01A is there."""
+"""Replaces functions of the shipped firmware through the debugger's port: those for hardware that QEMU does not have, such as
+the flash of the B-L475E-IOT01A."""
 
 import contextlib
 import sys
@@ -13,29 +13,29 @@ from board import FIRMWARE  # noqa: E402
 from counting import symbols  # noqa: E402
 
 FLASH = "robosync::boards::stm32l4::Flash::"
-PAGE, AT_ONCE = 2048, 1024  # bytes of the flash; … that the debugger writes at once
+PAGE, AT_ONCE = 2048, 1024  # bytes of a page of the flash; bytes that the debugger writes in one request
 DONE = 1  # boards::Erasing
 
 
 def is_needed():
-    """The firmware has that flash."""
+    """Whether the firmware has that flash."""
     return any(name.startswith(FLASH) for name in symbols(FIRMWARE))
 
 
 class Player(Debugger):
-    """Of functions that do nothing else any more. QEMU lets a debugger write what it keeps from the firmware."""
+    """Plays functions, whose own code no longer runs. QEMU lets a debugger write memory that the firmware cannot write."""
 
     def __init__(self, path):
         super().__init__(path)
         self._plays = {}
 
     def play(self, place, function):
-        """In the place of the one at that address, from now on; it is given what the core's registers hold."""
+        """From now on, calls `function` instead of the one at that address; its argument is the core's registers."""
         self.stop_at(place)
         self._plays[place] = function
 
     def play_next(self):
-        """Gives the address of the function that was played, None when the board was switched off."""
+        """Returns the address of the function that was played, None if the board was switched off."""
         if not self.go_on():
             return None
         core = self.core()
@@ -45,7 +45,7 @@ class Player(Debugger):
 
 
 class FlashPlayer(Player):
-    """Until the board is switched off."""
+    """Plays the flash until the board is switched off."""
 
     def __init__(self, path):
         super().__init__(path)

@@ -1,8 +1,9 @@
-"""Uploads that end in a cut of the power, or in a reset, at a drawn instant: whatever was under way, the robot then runs a program
-that it kept before, or the new one, whole.
+"""Uploads that end in a power cut or a reset at a random instant: whatever was in progress, the robot then runs a program
+that it had kept before, or the new one, intact.
 
-The board of ROBOSYNC_BOARD, which must have a store. The store goes on from run to run, so its slots are used in turn. The seed draws
-what happens and when; as the host's time is real, the same seed meets other instants of the board's.
+Uses the board of ROBOSYNC_BOARD, which must have a store. The store is carried over from run to run, so its slots are used in
+turn. The seed determines what happens and when; since the host runs in real time, the same seed hits other instants of the
+board's.
 """
 
 import argparse
@@ -18,18 +19,18 @@ import rsc
 from board import FAST, FIRMWARE, NAME, Board, end_on_signals
 
 PATIENCE = 20  # seconds
-LONGEST = 0.6  # from the call of `rsc upload` to the cut: uploads take 0.1 s to 0.3 s, and keeping the program as long again
+LONGEST = 0.6  # from the call of `rsc upload` to the cut: an upload takes 0.1 s to 0.3 s, and keeping the program as long again
 PROGRAM = "WHEN touch LEVEL > {threshold}\nDO LOG \"touched\", {threshold}\nEND\n"
 ROBOT = {"board": NAME, "sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}], "actuators": []}
 SIZES = (1, 40)  # rules of the two programs: one frame, and many
 
 
 class Broken(AssertionError):
-    """The robot is not as it must be after a cut."""
+    """The robot is not in a correct state after a cut."""
 
 
 class Robot:
-    """A board that is switched off and on."""
+    """A board that can be switched off and on."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
@@ -39,7 +40,7 @@ class Robot:
         self.running = None
 
     def begin(self):
-        """It has kept both programs."""
+        """Switches it on and has it keep both programs."""
         self.switch_on()
         self.names = {image: self._keep(image) for image in self.images}
 
@@ -67,7 +68,7 @@ class Robot:
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def settle(self):
-        """Waits until it runs a program and no trial is under way any more: `running` is that program then."""
+        """Waits until it runs a program and no trial is in progress; `running` is that program then."""
         give_up = time.monotonic() + PATIENCE
         while True:
             said = rsc.info(self.board.port)
@@ -87,7 +88,7 @@ def reset(robot):
 
 
 def one(robot, draw):
-    """An upload and its end: what happened, in words."""
+    """Runs an upload to its end; returns what happened, in words."""
     image = next(image for image, name in robot.names.items() if name != robot.running)
     end = draw.choice((cut, reset))
     after = draw.random() * LONGEST

@@ -1,4 +1,4 @@
-"""What the end-to-end tests share: compiling, scenarios, and a robot that runs a program."""
+"""Shared by the end-to-end tests: compiling, scenarios, and a robot that runs a program."""
 
 import json
 import os
@@ -30,7 +30,7 @@ SAFETY far
 END
 """
 
-# A motor that runs at 70 % when `near` is above 10, and back at 25 % when it is above 50.
+# A motor that runs forward at 70 % when `near` is above 10, and backward at 25 % when it is above 50.
 TURNS_ROUND = """
 WHEN near X > 10
 DO RUN wheel TO 70%
@@ -42,18 +42,18 @@ END
 
 
 def wheel_on(forward, back):
-    """The robot.json of it, on these two pins."""
+    """The robot.json for TURNS_ROUND, with the motor on these two pins."""
     return json.dumps({
         "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "wheel", "type": "PWM", "pins": [forward, back], "device": "motor"}]})
 
 
 class RobotTest(unittest.TestCase):
-    """One board for each test, and a folder that is deleted after it. Which board: ROBOSYNC_BOARD in the environment."""
+    """One board for each test, and a folder that is deleted after it. ROBOSYNC_BOARD in the environment selects the board."""
 
     elf = FIRMWARE
     icount = FAST
-    before = "null"  # where what other serial lines of the machine say goes
+    before = "null"  # character device for the output of the machine's other serial lines
     units = UNITS  # of the channels that scenarios feed
 
     def setUp(self):
@@ -69,12 +69,12 @@ class RobotTest(unittest.TestCase):
     def compile(self, program, config=CONFIG):
         image = self.folder / f"{Path(program).stem}.rsb"
         config = self.for_board(config)
-        # With a seed: the board, and nobody else, would take another one at each start.
+        # With a seed, because the board would otherwise choose another one at each start.
         rsc.run("compile", program, "--config", config, "--seed", SEED, "-o", image, "--anyway")
         return image
 
     def for_board(self, config):
-        """A robot.json, for the board that runs: on pins that it has."""
+        """Adapts a robot.json to the running board: to pins that it has."""
         robot = json.loads(Path(config).read_text())
         wired_as_it_can(robot.get("actuators", []))
         path = self.folder / "robot.json"
@@ -96,7 +96,7 @@ class RobotTest(unittest.TestCase):
 
 
 def wired_as_it_can(actuators):
-    """What is wired to a pin that is no output of the board goes to the first free one."""
+    """Moves an actuator whose pin is not an output of the board to the first free output."""
     outputs = [pin for row in PROFILE["outputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
     wired = [actuator for actuator in actuators if "pin" in actuator]
     taken = [int(str(actuator["pin"]), 0) for actuator in wired]
@@ -115,7 +115,7 @@ def host_trace(image, scenario, until_ms):
 class LineReader:
     """The stdout of a running rsc, line by line, without waiting for its end.
 
-    It goes through a file, which is never full: an rsc that had to wait for this process would not
+    It goes through a file, which never blocks: an rsc that had to wait for this process would not
     read from the board, whose virtual time does not wait.
     """
 
@@ -135,7 +135,7 @@ class LineReader:
         self.lines += [line.decode() for line in whole]
 
     def wait_for(self, condition, timeout):
-        """True when condition(lines) holds before the time is over or rsc ends."""
+        """True if condition(lines) becomes true before the timeout and before rsc ends."""
         deadline = time.monotonic() + timeout
         while True:
             ended = self._process.poll() is not None
@@ -147,7 +147,7 @@ class LineReader:
             time.sleep(0.01)
 
     def stop(self):
-        """Ends rsc; gives what it said on stderr."""
+        """Ends rsc; returns its stderr."""
         self._process.terminate()
         errors = self._process.stderr.read().decode()
         self._process.wait()

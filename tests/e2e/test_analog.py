@@ -1,5 +1,5 @@
-"""Analog inputs on the boards' firmware. The reference board's are words of its memory, which the test writes; the others have a
-converter that QEMU has not, so it never answers there. ROBOSYNC_BOARD says on which board."""
+"""Analog inputs on the boards' firmware. The reference board's are words of its memory, which the test writes. QEMU does not have
+the other boards' converters, so there they never answer. ROBOSYNC_BOARD selects the board."""
 
 import json
 import sys
@@ -35,7 +35,7 @@ SAFETY soft_hand
 END
 """ + "".join(f'WHEN a{pin} FORCE > 50%\nDO LOG "{pin} is held"\nELSE LOG "{pin} is free"\nEND\n' for pin in ANALOG)
 OTHER = 'WHEN a%d FORCE > 50%%\nDO LOG "held"\nEND\n' % LAST
-GPIO_CONFIGURATION = 0x5000_0700  # nRF52833 and its ancestor: a word for each pin of port 0
+GPIO_CONFIGURATION = 0x5000_0700  # nRF52833 and its predecessor: a word for each pin of port 0
 LOW_OUTPUT, NOT_DRIVEN = 0b11, 0b10
 PINS_OF_RINGS = {0: 2, 1: 3, 2: 4}
 
@@ -56,7 +56,7 @@ class Analog(DebuggedTest):
         return self.folder / "analog.rsl", "--config", self.folder / "robot.json"
 
     def begin(self):
-        """Hears the program from its first reading on."""
+        """Uploads the program and reads its trace from the first reading on."""
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", *self.written(PROGRAM))
         self.readers.append(reader)
         self.addCleanup(self.end, reader)
@@ -126,7 +126,7 @@ class WithoutConverter(Analog):
     def test_a_ring_is_let_go_for_the_program_that_measures_it(self):
         def rings():
             return {ring: self.wires.word(GPIO_CONFIGURATION + WORD * bit) for ring, bit in PINS_OF_RINGS.items()}
-        self.status()  # it has started
+        self.status()  # waits until it has started
         self.assertEqual(rings(), dict.fromkeys(ANALOG, LOW_OUTPUT))
         self.upload(*self.written(PROGRAM))
         self.assertEqual(rings(), dict.fromkeys(ANALOG, NOT_DRIVEN))
@@ -135,7 +135,7 @@ class WithoutConverter(Analog):
 
     @unittest.skipUnless(NAME == "microbit-v2", "that of the other is not up, and looked at no more")
     def test_what_a_converter_that_does_not_answer_costs(self):
-        """No more than costs.def says, with what the driver and the sampler do besides."""
+        """At most the value in costs.def, including the driver and the sampler."""
         listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
         said = next(int(line.split(",")[1].replace("'", "")) for line in listed.splitlines() if line.startswith("COST(analog,"))
         self.upload(*self.written(OTHER))

@@ -1,4 +1,4 @@
-"""What every board must do: it boots, names itself, runs an example as the host does, and stops."""
+"""What every board must do: boot, report its name, run an example as the host does, and stop."""
 
 import json
 import sys
@@ -28,7 +28,7 @@ BY_I2C = """{"board": "%s", "actuators": [],
               "channels": {"LEVEL": {"input": 0}}}]}"""
 
 
-# What stdlib/safety_basics.rsl expects, on the first output.
+# The actuators that stdlib/safety_basics.rsl expects, on the first output.
 ARMS = {"actuators": [{"name": "arm", "type": "PWM", "pin": PROFILE["outputs"][0]["pins"][0], "device": "servo",
                        "range": ["0deg", "100deg"]}],
         "groups": {"arms": ["arm"]}}
@@ -37,7 +37,7 @@ ALL_INPUTS = "\n".join(f'WHEN i{pin} IS closed\nDO LOG "{pin} low"\nELSE LOG "{p
 
 
 def button(name, pin):
-    """By its name where the board has one there."""
+    """A button on this pin, by its name if the board has one there."""
     part = next((part for part, wired in PARTS.items() if wired.get("pin") == pin), None)
     return {"name": name, "device": part} if part else {"name": name, "type": "GPIO", "pin": pin, "device": "button"}
 
@@ -47,7 +47,7 @@ class EveryBoard(TraceTest):
         return pins.arguments(self.folder)
 
     def run_wired(self, program, robot, *feeds):
-        """Uploads it; gives the pins, and a reader of what the board tells from then on."""
+        """Uploads the program; returns the pins, and a reader of the board's trace from then on."""
         config, source = self.folder / "wired.json", self.folder / "wired.rsl"
         config.write_text(json.dumps({"board": NAME, **robot}))
         source.write_text(program)
@@ -80,7 +80,7 @@ class EveryBoard(TraceTest):
         self.assertIn(f"board     {NAME},", rsc.run("info", "--port", self.board.port))
 
     def test_its_time_goes_on_evenly(self):
-        """The safety monitor never comes late, however the core sleeps and is woken by the line."""
+        """The safety monitor is never late, however the core sleeps and is woken by the line."""
         statuses = [self.status() for _ in range(20)]
         passed = statuses[-1]["uptime_us"] - statuses[0]["uptime_us"]
         checks = statuses[-1]["safety_checks"] - statuses[0]["safety_checks"]
@@ -97,7 +97,7 @@ class EveryBoard(TraceTest):
         self.assertTrue(any('"verb":"MOVE"' in line for line in lines))
 
     def test_examples_of_this_board_do_what_they_do_on_the_host(self):
-        """With the parts of the board that they are for: elsewhere these are virtual."""
+        """Uses the real parts of the board that the examples are for; on other boards these are virtual."""
         for folder in examples.folders():
             if json.loads((folder / "robot.json").read_text()).get("board") != NAME:
                 continue
@@ -125,7 +125,7 @@ class EveryBoard(TraceTest):
         self.await_event(reader, "release", actuator="arm")
 
     def test_no_code_of_kernel_and_port_is_in_the_place_of_the_cores_registers(self):
-        """In 64 KB, of which QEMU keeps one page of each place at hand (boards/common/firmware.ld)."""
+        """Their addresses differ modulo 64 KB, because QEMU caches one page per such address (boards/common/firmware.ld)."""
         ours = {name: at for name, at in symbols(FIRMWARE).items()
                 if name.endswith("_Handler") or name.startswith(("robosync::kernel::Kernel::", "robosync::port::"))}
         self.assertGreater(len(ours), 20)

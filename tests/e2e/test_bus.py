@@ -1,5 +1,5 @@
-"""Devices on the I2C bus that do not answer, fall silent and come back, hold the bus: what `rsc upload`, `rsc info` and
-`rsc monitor` say of them, and that the board goes on. The touch sensor is the emulated MAX34451; at 0x33 there is nobody."""
+"""Devices on the I2C bus that do not answer, fall silent and come back, or hold the bus: what `rsc upload`, `rsc info` and
+`rsc monitor` report, and that the board keeps running. The touch sensor is the emulated MAX34451; there is no device at 0x33."""
 
 import json
 import sys
@@ -16,9 +16,9 @@ from counting import of_the_board, symbols  # noqa: E402
 
 PATIENCE = 20
 PC, LR = 15, 14
-WRITTEN = 3  # the register with how many bytes a transfer writes
-ROUNDS = 3  # that tell that a device has fallen silent, or answers again (runtime-m4/layers/contact.hpp)
-# Of a transfer that reads a word, half bits up to the second bit that the device sends; they are zeros.
+WRITTEN = 3  # the register with the number of bytes that a transfer writes
+ROUNDS = 3  # until a device counts as silent, or as answering again (runtime-m4/layers/contact.hpp)
+# Half bits in a transfer that reads a word, up to the second bit that the device sends; its bits are zeros.
 TO_DATA = 1 + 3 + 2 * 9 + 2 * 9 + 3 + 2 * 9 + 4
 TOUCH = {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
          "channels": {"LEVEL": {"input": 0, "range": [0, 10], "rate": "20Hz", "stale_after": "500ms"}}}
@@ -35,7 +35,7 @@ class Bus(DebuggedTest):
         self.at = {name: address for name, address in symbols(FIRMWARE).items() if "I2c::" in name or "half_bit" in name}
 
     def begin(self, *sensors):
-        """Uploads a program that reads the first channel of each; gives the finished rsc."""
+        """Uploads a program that reads the first channel of each; returns the finished rsc."""
         (self.folder / "robot.json").write_text(json.dumps({"board": NAME, "sensors": sensors, "actuators": [ARM]}))
         names = [f"{sensor['name']} {next(iter(sensor['channels']))}" for sensor in sensors]
         (self.folder / "robot.rsl").write_text("".join(map(RULE.format, names)))
@@ -48,7 +48,7 @@ class Bus(DebuggedTest):
         return rsc.info(self.board.port)["buses"]
 
     def fail_transfers(self, times):
-        """As when nobody acknowledges."""
+        """Makes transfers fail as if no device acknowledged."""
         with self.debugger() as debugger:
             transfer = self.place(of_the_board("I2c::transfer("))
             for _ in range(times):
@@ -63,7 +63,7 @@ class Bus(DebuggedTest):
         warnings = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
         self.assertEqual(len(warnings), 1, done.stderr)
         self.assertRegex(warnings[0], r"^warning: ghost at address 0x33 on i2c bus 0 does not answer \(\d+ transfers? failed\): "
-                                      r"has it power, are both wires of the bus connected, is this its address\?$")
+                                      r"does it have power, are both wires of the bus connected, is this its address\?$")
         found = {device["sensor"]: device for device in self.buses()["devices"]}
         self.assertEqual((found["touch"]["answers"], found["touch"]["failed"]), (True, 0))
         self.assertEqual((found["ghost"]["answers"], found["ghost"]["bus"], found["ghost"]["address"]), (False, 0, "0x33"))
@@ -73,7 +73,7 @@ class Bus(DebuggedTest):
         self.assertRegex(said, r"(?m)^silent    ghost at address 0x33 on i2c bus 0 does not answer")
         said = rsc.run("monitor", "--port", self.board.port, "--duration", "300ms")
         self.assertRegex(said, r"(?m)^ +silent  ghost at address 0x33")
-        self.assertEqual(said.count("does not answer"), 1, said)  # whose moment is over
+        self.assertEqual(said.count("does not answer"), 1, said)  # in the first report only: the event itself is in the past
         self.assertEqual(self.status()["faults"], 0)
 
     def test_all_that_answer_are_no_matter(self):
@@ -101,11 +101,11 @@ class Bus(DebuggedTest):
         self.assertEqual((device["answers"], device["failed"]), (True, 3 * ROUNDS))
 
     def test_a_device_that_was_interrupted_in_a_byte_gets_its_clocks(self):
-        """The board is reset while the device sends a zero: it holds the data line down until somebody goes on."""
+        """The board is reset while the device sends a zero: the device holds the data line low until it gets more clocks."""
         self.begin(TOUCH)
         with self.debugger() as debugger:
             transfer = self.place(of_the_board("I2c::transfer("))
-            # It selects its page first.
+            # The driver selects a page first.
             self.assertTrue(any(debugger.register_at(transfer, WRITTEN, 1) == [1] for _ in range(10)))
             debugger.register_at(self.place(of_the_board("I2c::half_bit() const")), PC, TO_DATA)
             self.board.qmp.command("system_reset")

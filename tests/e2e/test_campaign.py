@@ -1,4 +1,4 @@
-"""A share of the safety campaign: `scripts/soak safety` does more of it."""
+"""Part of the safety campaign: `scripts/soak safety` runs more of it."""
 
 import unittest
 

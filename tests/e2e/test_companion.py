@@ -1,4 +1,4 @@
-"""rsc companion: a word in a recording, a face and a marker in a picture, reach a program on the shipped firmware."""
+"""rsc companion: a word in a recording, and a face and a marker in a picture, reach a program on the shipped firmware."""
 
 import functools
 import json
@@ -69,7 +69,7 @@ SAFETY stops
   RESUME WHEN voice WORD IS silence
 END
 """
-# In the place of arecord: a microphone that hears a file, and says when it began to.
+# A substitute for arecord: a microphone that plays a file, and records when it began.
 MICROPHONE = """#!/usr/bin/python3
 import os, sys, time
 samples = open(os.environ["HEARD"], "rb").read()
@@ -81,24 +81,24 @@ for at in range(0, len(samples), 640):
     sys.stdout.buffer.flush()
 time.sleep(60)
 """
-# Where the word "forward" ends in goforward.raw: so says pocketsphinx with its large language model, which knows the whole sentence.
+# The end of the word "forward" in goforward.raw, according to pocketsphinx with its large language model and the whole sentence.
 FORWARD_ENDS = 1.17
 TIMES = 4
 ATTEMPTS = 5
 WATCHDOG = '"reset_reason":"watchdog"'
-FORWARD = '"channel":"WORD","value":"forward"'  # the trace says it behind what SAFETY did about it
+FORWARD = '"channel":"WORD","value":"forward"'  # in the trace it comes after SAFETY's reaction to it
 HALT = '"event":"halt","actuator":"arm"'
 BETWEEN = 1.0  # seconds
-LATE = 1.0  # … is too late to stop
+LATE = 1.0  # seconds; a stop that late is too late
 
 
 class StoodStill(Exception):
-    """The board was reset: a machine that stands still for 50 ms looks to the emulated watchdog, in real time, like a firmware that
-    hangs."""
+    """The board was reset: when the host stalls for 50 ms, the emulated watchdog, which runs in real time, assumes that the
+    firmware hangs."""
 
 
 def unless_it_stands_still(test):
-    """Tries again, with another board, when the machine was too busy."""
+    """Tries again, with another board, if the machine was too busy."""
     @functools.wraps(test)
     def tried(self):
         for _ in range(ATTEMPTS):
@@ -147,7 +147,7 @@ class Companion(RobotTest):
         self.assertNotIn("stale", [event["event"] for event in events])
 
     def microphone(self, samples):
-        """Puts one on the PATH that hears them; when it began stands in the file that it gives."""
+        """Puts a microphone that plays the samples on the PATH; returns the file with the time when it began."""
         (self.folder / "heard").write_bytes(samples)
         (self.folder / "arecord").write_text(MICROPHONE)
         (self.folder / "arecord").chmod(0o755)
@@ -170,7 +170,7 @@ class Companion(RobotTest):
         after = []
         try:
             for i in range(TIMES):
-                # It may hear the word more often, or be halted since it has not heard anything yet.
+                # It may hear the word more often, or be halted because it has not heard anything yet.
                 ends = BETWEEN + i * each + FORWARD_ENDS
                 heard = reader.wait_for(lambda lines: sum(FORWARD in line for line in lines) > i, 30)
                 if any(WATCHDOG in line for line in reader.lines):
@@ -189,7 +189,7 @@ class Companion(RobotTest):
     @needs("own_words")
     @unless_it_stands_still
     def test_words_that_were_taught_move_the_arm(self):
-        """In French, by the synthetic voice that taught them, which says them at another speed."""
+        """French words, said by the synthetic voice that taught them, at another speed."""
         voice = {"name": "voice", "module": "own_words", "input": "microphone", "config": {"words": "my.words"}}
         (self.folder / "wanted.json").write_text(json.dumps({**ROBOT, "algorithms": [voice]}))
         for word in ("avance", "merci", "doucement"):

@@ -1,6 +1,6 @@
-"""A program that leaves the link's thread, which ranks below it, nothing of the processor: rsc reaches the robot nevertheless.
+"""A program that uses all processor time, above the rank of the link's thread: rsc reaches the robot nevertheless.
 
-`rsc` uploads such a program with --anyway only."""
+`rsc` uploads such a program only with --anyway."""
 
 import statistics
 import unittest
@@ -21,14 +21,14 @@ END
 
 ANSWERS = 20
 STEP_US = 1_500
-# 10 ms, and what this machine takes to read an answer and ask again. Without the link's share there is none for ever. Its time
-# goes on while this machine does something else, so half of the answers may take longer; `scripts/bench --only answer` counts the
-# worst in the robot's own instructions.
+# 10 ms, plus the time this machine takes to read an answer and ask again. Without the link's share there would never be an
+# answer. The robot's time continues while this machine is busy, so half of the answers may take longer; `scripts/bench --only
+# answer` counts the worst case in the robot's instructions.
 PATIENCE_US = 40_000
 
 
 class Crowded(RobotTest):
-    icount = REAL_TIME  # it is never idle
+    icount = REAL_TIME  # the program is never idle
 
     def setUp(self):
         super().setUp()
@@ -44,7 +44,7 @@ class Crowded(RobotTest):
             said = [line.status() for _ in range(1 + ANSWERS)]
         took = [after.uptime_us - before.uptime_us for before, after in zip(said, said[1:])]
         self.assertLessEqual(statistics.median(took), PATIENCE_US, took)
-        # It has a share, and no more: of each 20 ms at least 19 are the program's, whose steps take 1.5 ms on this board.
+        # The link gets its share and no more: at least 19 of each 20 ms are the program's, whose steps take 1.5 ms on this board.
         passed, steps = said[-1].uptime_us - said[0].uptime_us, said[-1].steps - said[0].steps
         self.assertGreater(steps * STEP_US, passed * 0.8)
         self.assertEqual((said[-1].faults, said[-1].reset_reason), (0, 0))

@@ -1,4 +1,4 @@
-"""What arrives damaged is refused with a reason, and the program that runs goes on."""
+"""Damaged data is refused with a reason, and the running program continues."""
 
 import random
 import re
@@ -11,8 +11,8 @@ import wire
 from support import PROGRAMS, LineReader, RobotTest
 
 REFUSALS = ["none"] + re.findall(r"^REFUSAL\((\w+),", (rsc.ROOT / "vm/refusals.def").read_text(), re.M)
-BODY_AT = 8  # ImageHeader: magic, CRC-32 of everything behind it
-SILENCE = 3.5  # s, after which a host in the midst of a transfer is gone
+BODY_AT = 8  # ImageHeader: magic, CRC-32 of everything after it
+SILENCE = 3.5  # s, after which a host in the middle of a transfer counts as gone
 
 
 class Damage(RobotTest):
@@ -25,7 +25,7 @@ class Damage(RobotTest):
         self.before = self.line.hello()
 
     def activate(self, image):
-        """The name of the refusal, or "none" when the image runs now."""
+        """The name of the refusal, or "none" if the image now runs."""
         status = self.line.transfer(image)
         self.assertEqual(wire.ENUMS["TransferState"][status.state], "complete")
         result = self.line.activate()
@@ -59,7 +59,7 @@ class Damage(RobotTest):
         self.assert_goes_on()
 
     def test_flipped_bytes_with_the_checksum_put_right(self):
-        """Some still are programs; then they run, and nothing faults, hangs or restarts."""
+        """Some are still programs; then they run, and nothing faults, hangs or restarts."""
         random_ = random.Random(7)
         uptime, seen = self.line.status().uptime_us, set()
         for _ in range(300):
@@ -70,7 +70,7 @@ class Damage(RobotTest):
         status = self.line.status()
         self.assertGreater(status.uptime_us, uptime)
         self.assertEqual((status.faults, status.reset_reason), (0, 0))
-        self.assertGreater(len(seen - {"none"}), 5, seen)  # the verifier has seen more than the CRC
+        self.assertGreater(len(seen - {"none"}), 5, seen)  # the verifier has checked more than the CRC
         self.assertFalse({"bad_crc", "wrong_name"} & seen)
         self.assertEqual(self.activate(self.image), "none")
 
@@ -81,7 +81,7 @@ class Damage(RobotTest):
         cases = {
             "bad_magic": b"ELF!" + self.image[4:],
             "bad_crc": self.image[:-1] + bytes([self.image[-1] ^ 1]),
-            "wrong_name": wire.with_crc(self.image[:24] + bytes([self.image[24] ^ 1]) + self.image[25:]),  # of its seed
+            "wrong_name": wire.with_crc(self.image[:24] + bytes([self.image[24] ^ 1]) + self.image[25:]),  # in its seed
             "wrong_version": patched(12, b"\x09"),
             "wrong_opcodes": patched(14, b"\xde\xad"),
             "bad_length": patched(8, struct.pack("<I", len(self.image) - 4)),
@@ -116,7 +116,7 @@ class Damage(RobotTest):
         self.assert_goes_on()
 
     def test_bad_frames(self):
-        """Each costs itself at most: the question that follows is answered."""
+        """Only the bad frame itself is lost: the request after it is answered."""
         good = wire.frame("get_status")
         random_ = random.Random(3)
         bad = [b"\0\0\0", b"\x01\0", b"\xff" * 2000 + b"\0", good[:3] + b"\0", good[:-1] + b"\x55\0",
@@ -132,7 +132,7 @@ class Damage(RobotTest):
         self.assert_goes_on()
 
     def test_a_flood(self):
-        """Bytes without end delay nobody: the link's thread is the lowest, and its interrupts are short."""
+        """A flood of bytes delays nothing: the link's thread has the lowest rank, and its interrupts are short."""
         self.line.send_raw(random.Random(5).randbytes(20_000) + b"\0")
         status = self.line.status()
         self.assertLessEqual(status.safety_late_us, 1000)

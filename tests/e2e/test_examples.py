@@ -1,4 +1,4 @@
-"""Every example does on the board what it does in `rsc run`, whatever its sensors say."""
+"""Every example does the same on the board as in `rsc run`, whatever its sensors measure."""
 
 import json
 import os

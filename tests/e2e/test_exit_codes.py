@@ -10,7 +10,7 @@ import rsc
 from support import CONFIG, PROGRAMS
 
 PAPER = PROGRAMS / "paper.rsl"
-# A 0, which ends what was on the line before, and the frame.
+# A 0, which ends any earlier bytes on the line, and the frame.
 STOP_FRAME = bytes([0, 5, 0x15, 0xFF, 0x79, 0xFF, 0])
 
 

@@ -1,13 +1,13 @@
-"""A face on an SSD1306, on the shipped firmware. QEMU has an older relative of it, the SSD0303: it takes the same control bytes and
-addresses, and shows the upper 16 rows of its memory, from column 36 on. That is the upper quarter of the picture. What it does not know
-(the way of addressing, the charge pump) it leaves out; tests/runtime-m4/drivers/ssd1306_test.cpp has all 128 x 64 dots."""
+"""A face on an SSD1306, on the shipped firmware. QEMU has an older relative, the SSD0303: it takes the same control bytes and
+addresses, and shows the upper 16 rows of its memory, from column 36 on. That is the upper quarter of the picture. It ignores the
+commands that it does not know (addressing mode, charge pump); tests/runtime-m4/drivers/ssd1306_test.cpp has all 128 x 64 dots."""
 
 import json
 import re
 import time
 import unittest
 
-from support import NAME, ROOT, STOPS_WHEN_FAR, LineReader  # and where what follows is found
+from support import NAME, ROOT, STOPS_WHEN_FAR, LineReader  # also makes the imports below work
 from traces import TraceTest
 
 import rsc
@@ -16,8 +16,8 @@ from stimuli import Reading
 PATIENCE = 20
 PICTURES = dict(re.findall(r'^PICTURE\((\w+),\s*"(.*)"\)$', (ROOT / "runtime-m4/drivers/pictures.def").read_text(), re.M))
 PICTURES = {name: rows.split('", "') for name, rows in PICTURES.items()}
-ALIKE = {"happy", "sad"}  # the upper quarter of `neutral`
-COLUMNS, ROWS, SCALE, SIDE = 96, 16, 4, 12  # of what QEMU shows; a light in dots
+ALIKE = {"happy", "sad"}  # their upper quarter equals that of `neutral`
+COLUMNS, ROWS, SCALE, SIDE = 96, 16, 4, 12  # QEMU's display; SIDE: a light in dots
 THERE, NOBODY = 0x3C, 0x3D
 PROGRAM = "".join(f"WHEN near X > {10 * i} AND near X < {10 * i + 9} DO SHOW face {name} END\n" for i, name in enumerate(PICTURES))
 BLINKS = """
@@ -38,7 +38,7 @@ GOES_ON = 'AT START DO SHOW face happy END\nEVERY 100ms DO LOG "goes on" END\n'
 
 
 def quarter(name):
-    """What of it is to be seen, row by row."""
+    """The visible part of the picture, row by row."""
     lights = PICTURES.get(name, ["....."] * 5)
     return ["".join(lights[y // SIDE][x // SIDE] if x < 5 * SIDE else "." for x in range(COLUMNS)) for y in range(ROWS)]
 

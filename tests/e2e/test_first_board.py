@@ -1,4 +1,4 @@
-"""The self test for who has a board, on the emulated one: all of it that needs no hand and no eye."""
+"""The self-test for owners of a board, on the emulated one: the part that needs no person."""
 
 import subprocess
 import sys
@@ -21,7 +21,7 @@ class FirstBoard(unittest.TestCase):
         rows = [row for row in done.stdout.splitlines() if row.endswith((" ok |", " **NOT** |"))]
         wrong = [row for row in rows if row.endswith(" **NOT** |")]
         self.assertEqual((len(rows), done.stderr), (10, ""), done.stdout)
-        # The emulator's second is longer while this machine has other things to do.
+        # The emulator's second is longer while this machine is busy.
         self.assertTrue(all("its second" in row for row in wrong), done.stdout)
         self.assertEqual(done.returncode, len(wrong))
 

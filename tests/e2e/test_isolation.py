@@ -1,6 +1,6 @@
 """A behaviour's thread that goes wild in the shipped firmware: it is stopped and reported, its actuator
-comes to rest, the others go on, and safety is never late. What SAFETY's bytecode may touch, and what comes of it if it touched
-anything else."""
+comes to rest, the others continue, and safety is never late. Also: the memory that SAFETY's bytecode may access, and what happens
+if it accesses anything else."""
 
 import json
 import sys
@@ -19,7 +19,7 @@ from counting import symbols  # noqa: E402
 PATIENCE = 20
 UART = 0x40004000
 RAM = 0x20000000
-NMI_NEEDS = 192  # bytes: a frame with FPU registers, and what it calls
+NMI_NEEDS = 192  # bytes: a frame with FPU registers, and the functions that it calls
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
 OVERRUN = 1 << 22  # port/cortex-m4/fault.hpp
 AT_REST, AT_60_DEGREES = 500, 1500  # us
@@ -70,26 +70,26 @@ class Isolation(FirmwareTest):
         self.assertTrue(reader.wait_for(came, PATIENCE), f"no {wanted} in {reader.lines}")
 
     def pulses(self):
-        """What the servos are told."""
+        """The servos' pulses."""
         with self.debugger() as debugger:
             return debugger.read_words(self.symbols[PWM_PULSES], 2)
 
     def main_stack_left(self):
-        """Bytes of the handlers' stack that were never used: the board's RAM is zero when it starts."""
+        """Bytes of the handlers' stack that were never used: the board's RAM is zero at start."""
         top = self.symbols["main_stack_top"]
         with self.debugger() as debugger:
             words = debugger.read_words(RAM, (top - RAM) // 4)
         return 4 * next(i for i, word in enumerate(words) if word)
 
     def make_wild(self):
-        """The next time the interpreter runs for the behaviour, it takes a serial line for its machine."""
+        """The next time the interpreter runs for the behaviour, its machine's address is that of a serial line."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
         with self.debugger() as debugger:
             debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
             debugger.set_register(0, UART)
 
     def make_endless(self):
-        """The next time the interpreter runs for the behaviour, it jumps to where nothing leaves again."""
+        """The next time the interpreter runs for the behaviour, it jumps into an endless loop."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
         with self.debugger() as debugger:
             debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
@@ -105,7 +105,7 @@ class Isolation(FirmwareTest):
         self.upload(PROGRAM, CONFIG)
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         try:
-            for value in [1, 2] * 50:  # until it listens
+            for value in [1, 2] * 50:  # until the monitor listens
                 self.board.set_touch(value, TAME)
                 if reader.wait_for(lambda lines: lines, 0.2):
                     break
@@ -121,7 +121,7 @@ class Isolation(FirmwareTest):
         finally:
             reader.stop()
         self.assertEqual(self.pulses(), [AT_REST, AT_60_DEGREES])
-        # Telling of a fault is the deepest that a handler goes; the NMI may still come on top of it.
+        # A handler is deepest when it reports a fault; the NMI may still come on top of it.
         self.assertGreaterEqual(self.main_stack_left(), NMI_NEEDS)
         info = rsc.info(self.board.port)
         states = {thread["name"]: thread["state"] for thread in info["threads"]}
@@ -162,7 +162,7 @@ LOWERED = 9  # below the last behaviour
 
 
 class Algorithms(FirmwareTest):
-    """A module that goes wild: it is lowered or stopped, its outputs become unknown, and all others go on."""
+    """A module that goes wild: it is lowered or stopped, its outputs become unknown, and everything else continues."""
 
     def setUp(self):
         super().setUp()
@@ -170,7 +170,7 @@ class Algorithms(FirmwareTest):
         self.board.set_touch(0, 1)
         self.upload(SKIN_PROGRAM, SKIN_CONFIG)
         self.reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        for value in [1, 2] * 50:  # until it listens
+        for value in [1, 2] * 50:  # until the monitor listens
             self.board.set_touch(value, 1)
             if self.reader.wait_for(lambda lines: lines, 0.2):
                 break
@@ -189,13 +189,13 @@ class Algorithms(FirmwareTest):
                         f"no {wanted} in {self.reader.lines}")
 
     def in_module(self, act):
-        """act(debugger) the next time that the module is called."""
+        """Calls act(debugger) the next time the module is called."""
         with self.debugger() as debugger:
             debugger.run_to(self.symbols[MODULE], lambda: None)
             act(debugger)
 
     def stay(self, debugger):
-        """It takes milliseconds in the place of some microseconds."""
+        """Makes it take milliseconds instead of some microseconds."""
         debugger.set_register(PC, endless_loop())
         for _ in range(3):
             debugger.run_to(self.symbols[TICK], lambda: None)
@@ -217,8 +217,8 @@ class Algorithms(FirmwareTest):
         self.assertEqual((status["faults"], status["safety_late_us"]), (1 if stopped else 0, 0))
 
     def test_one_that_touches_what_is_not_its_own_is_stopped(self):
-        """Not even what behaviours may read."""
-        self.in_module(lambda debugger: debugger.set_register(2, ARENA))  # what it only reads
+        """It may not even access what behaviours may read."""
+        self.in_module(lambda debugger: debugger.set_register(2, ARENA))  # an argument that it only reads
         self.expect(event="fault", thread="skin", cause=NO_ACCESS)
         self.expect(event="stale", sensor="skin")
         address = next(fault["address"] for fault in self.events(event="fault", cause=NO_ACCESS))
@@ -238,7 +238,7 @@ class Algorithms(FirmwareTest):
         self.others_go_on(stopped=True, priority=LOWERED)
 
     def stay_until_seen(self, debugger):
-        """… by the safety monitor, which looks every ten milliseconds."""
+        """Stays until the safety monitor, which checks every ten milliseconds, has seen it."""
         punish = next(at for name, at in self.symbols.items() if name.startswith(PUNISH))
         debugger.set_register(PC, endless_loop())
         debugger.run_to(punish, lambda: None)
@@ -275,7 +275,7 @@ CODE = 0x400
 
 
 class Safety(FirmwareTest):
-    """SAFETY's bytecode has its own memory and no other, though it runs in the safety thread."""
+    """SAFETY's bytecode can access only its own memory, although it runs in the safety thread."""
 
     def setUp(self):
         super().setUp()
@@ -286,13 +286,13 @@ class Safety(FirmwareTest):
         return next(at for name, at in self.symbols.items() if name.startswith(begin))
 
     def in_sandbox(self, act):
-        """act(debugger) the next time that a SAFETY rule's bytecode begins."""
+        """Calls act(debugger) the next time a SAFETY rule's bytecode begins."""
         with self.debugger() as debugger:
             debugger.run_to(self.place(IN_SANDBOX), lambda: None)
             return act(debugger)
 
     def test_what_it_can_read(self):
-        """As far as QEMU tells: it asks the MPU for the beginning of a page."""
+        """As far as QEMU can tell: it checks the beginning of a page with the MPU."""
         def look(debugger):
             places = {"the program": debugger.register(1), "flash": CODE, "the kernel": self.symbols[KERNEL],
                       "the watchdog": WATCHDOG}

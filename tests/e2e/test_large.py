@@ -1,5 +1,5 @@
-"""Large programs on the one firmware: 32 servos, 40 behaviours, 1,000 rules arrive over the link and react,
-on the board as on the host; and what is too large is refused with the numbers."""
+"""Large programs on the shipped firmware: 32 servos, 40 behaviours and 1,000 rules arrive over the link and react
+on the board as on the host. A program that is too large is refused with the numbers."""
 
 import json
 import re
@@ -24,7 +24,7 @@ def config(actuators):
 
 
 def program(rules, behaviors, actuators):
-    """Rule r moves one arm when its channel has the value that is its own."""
+    """Rule r moves one arm when its channel has the rule's own value."""
     lines = []
     for b in range(behaviors):
         lines.append(f"BEHAVIOR b{b} PRIORITY {90 - b}")
@@ -70,7 +70,7 @@ class Large(RobotTest):
                 self.assertEqual(len(fired), 1, errors)
         self.assertEqual(self.status()["faults"], 0)
         memory = rsc.info(self.board.port)["board"]["memory"]
-        self.assertEqual(sum(memory["by"].values()), memory["used"])  # the host's count, and the board's
+        self.assertEqual(sum(memory["by"].values()), memory["used"])  # the host's count equals the board's
         for thread in rsc.info(self.board.port)["threads"]:
             self.assertLess(thread["stack_used"], thread["stack_bytes"], thread)
 
@@ -91,7 +91,7 @@ class Large(RobotTest):
         self.assertEqual(lines.count('"event":"fire"'), 1)
 
     def test_what_is_too_large_is_refused_with_both_numbers(self):
-        """By rsc before it is sent, and of an image, by the simulator and for the board alike."""
+        """rsc refuses a program before it sends it; an image is refused in the same way by the simulator and for the board."""
         source, robot = self.write_large(1000, 60, 32)
         image = self.compile_large(1000, 60, 32)
         port = ["--port", self.board.port]

@@ -1,4 +1,4 @@
-"""What the shipped firmware tells of its past, after the safety thread itself failed: why the board has started again, and
+"""What the shipped firmware reports after the safety thread itself has failed: why the board restarted, and
 which fault it had, in `rsc info` and in the first line of `rsc monitor`."""
 
 import json
@@ -21,7 +21,7 @@ NOWHERE = 0xA000_0000  # nothing may run there
 
 class LastWords(DebuggedTest):
     def send_safety_to(self, address):
-        """The safety thread's next look at the rules jumps there."""
+        """Makes the safety thread's next check of the rules jump to the address."""
         with self.debugger() as debugger:
             debugger.run_to(symbols(FIRMWARE)[IN_SAFETY], lambda: None)
             debugger.set_register(PC, address)
@@ -44,23 +44,23 @@ class LastWords(DebuggedTest):
         self.assertRegex(self.first_line(), rf"^ +board  {NAME}, up [\d.]+ s \(reset: power\), .* 0 faults$")
 
     def test_a_monitor_goes_on_after_a_reset(self):
-        # Its time is that of the clock: ahead of it, a board may soon be up for longer than before it was reset.
+        # Real time: with time running ahead, the board might soon be up for longer than before the reset.
         board = self.enterContext(Board(self.elf))
         reader = LineReader("monitor", "--port", board.port, "--format", "json")
         self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
-        time.sleep(3)  # it has looked how long the board is up
+        time.sleep(3)  # the monitor has asked for the board's uptime
         board.qmp.command("system_reset")
         self.assertTrue(reader.wait_for(lambda lines: len(lines) > 1, PATIENCE), reader.lines)
         errors = reader.stop()
-        # Once for each start: on a busy machine QEMU's clock leaps, and the watchdog resets the board, too.
+        # One line for each start: on a busy machine QEMU's clock jumps, and the watchdog resets the board, too.
         self.assertEqual({json.loads(line)["event"] for line in reader.lines}, {"board"})
-        self.assertEqual(errors.count("the board has started again"), len(reader.lines) - 1, errors)
+        self.assertEqual(errors.count("the board has restarted"), len(reader.lines) - 1, errors)
 
     def test_a_fault_of_the_safety_thread_is_told_after_the_reset(self):
         self.send_safety_to(NOWHERE)
         fault = self.await_reset("software")["last_fault"]
         self.assertEqual((fault["thread"], fault["pc"]), ("safety", NOWHERE))
-        for _ in range(2):  # whoever asks
+        for _ in range(2):  # every host gets the answer
             line = json.loads(self.first_line("--format", "json"))
             self.assertEqual((line["reset_reason"], line["last_fault"]), ("software", fault))
             self.assertRegex(self.first_line(), r"\(reset: software\).* last fault: thread safety stopped: .* pc a0000000")

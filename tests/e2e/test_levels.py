@@ -1,6 +1,6 @@
 """Optimised or not, a program does the same: random programs have the same trace at -O0 and -O1.
 
-As a program of its own it runs as many as wanted: test_levels.py --count 1000 --first 0
+Run it as a program to test any number of programs: test_levels.py --count 1000 --first 0
 """
 
 import argparse
@@ -21,7 +21,7 @@ from support import CONFIG
 COUNT = 40  # programs in the test suite
 REFUSED = 1  # exit code of rsc
 MOST_TOO_LARGE = 0.15  # of the programs
-AFTER_MS = 4_000  # program time in which everything started goes on
+AFTER_MS = 4_000  # program time for everything that was started to continue
 
 
 def scenario_of(readings):
@@ -32,9 +32,9 @@ def scenario_of(readings):
 
 
 def traces(seed, folder):
-    """The traces of one program, as it is written and optimised; and its text.
+    """The traces of one program, unoptimised and optimised, and its text.
 
-    Some programs are too large for a robot. As written they may be so where the optimised one fits;
+    Some programs are too large for a robot. The unoptimised one may be too large while the optimised one fits;
     then there is nothing to compare, and both traces are empty.
     """
     text = Generator(seed).program()

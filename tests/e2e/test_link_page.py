@@ -1,5 +1,5 @@
-"""docs/link.md is enough to write a client from: this one reads nothing but the page, speaks to the shipped firmware, uploads a
-program, and is told what the program does."""
+"""docs/link.md is sufficient to write a client: this one reads only the page, talks to the shipped firmware, uploads a
+program and receives the program's trace."""
 
 import re
 import struct
@@ -112,7 +112,7 @@ class FromThePage(RobotTest):
         return self.client.ask("hello", "hello_reply", session=SESSION, host=b"page")
 
     def upload(self, image):
-        """In pieces that copy nothing, and in data, by turns."""
+        """Alternates between pieces that copy nothing, and data."""
         name = image[16:24]
         status = self.client.ask("begin", "transfer_status", session=SESSION, size=len(image), hash=name, base=NO_BASE)
         states = self.client.messages["transfer_status"].values["state"]

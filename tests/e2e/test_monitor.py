@@ -1,4 +1,4 @@
-"""rsc monitor on a terminal: what stands on its screen, what its keys do to the board, and that it leaves the terminal as it was."""
+"""rsc monitor on a terminal: its screen, the effects of its keys on the board, and that it leaves the terminal as it was."""
 
 import os
 import re
@@ -14,7 +14,7 @@ PATIENCE = 20
 
 
 class Terminal:
-    """tmux, a terminal emulator that says what is on its screen."""
+    """tmux, a terminal emulator that reports the contents of its screen."""
 
     def __init__(self, folder, columns=100, rows=40):
         self._tmux = ["tmux", "-L", f"robosync-{os.getpid()}", "-f", "/dev/null"]
@@ -60,7 +60,7 @@ class Monitor(RobotTest):
                            "Enter")
 
     def has_ended(self, code):
-        """With its terminal as it was."""
+        """Checks that it has ended with this code and has left the terminal as it was."""
         screen = self.wait_for(f"ended {code}", missing="BEHAVIOURS")
         self.wait_for(r"[$#]\s*$")
         before, after = ((self.folder / name).read_text() for name in ("before", "after"))
@@ -73,7 +73,7 @@ class Monitor(RobotTest):
         for part in ("mps2-an386", "SENSORS", "BEHAVIOURS", "ACTUATORS", "SAFETY", "LOG", "q quit"):
             self.assertIn(part, screen)
         self.terminal.type("f")
-        self.wait_for("reading, as touch.LEVEL=2")
+        self.wait_for("reading, such as touch.LEVEL=2")
         self.terminal.type("touch.LEVEL=1", "Enter")
         self.wait_for(r"touch\.LEVEL +1 ")
         self.terminal.type("f", "nobody.LEVEL=1", "Enter")
@@ -105,7 +105,7 @@ class Monitor(RobotTest):
                 self.assertEqual(len(pids), 1)
                 os.kill(int(pids[0]), ending)
                 self.has_ended(code)
-                self.terminal.type("clear", "Enter")  # for the next one
+                self.terminal.type("clear", "Enter")  # for the next run
                 self.wait_for(r"[$#]\s*$", missing="ended")
 
     def test_plain_lines(self):

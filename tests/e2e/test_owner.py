@@ -1,5 +1,5 @@
-"""A robot with an owner: the shipped firmware verifies what rsc has signed with libsodium, takes nothing from anybody else, and
-knows its owner after it was switched off. What a stranger sends, he has heard before: the line is recorded."""
+"""A robot with an owner: the shipped firmware verifies what rsc has signed with libsodium, accepts nothing from anybody else, and
+remembers its owner after it was switched off. A stranger replays frames that he has recorded on the line."""
 
 import os
 import re
@@ -13,14 +13,14 @@ from support import PROGRAMS
 from tap import Tap
 from test_store import Switched
 
-SPARE = 400  # bytes of the link's stack that no signature needs: those of an interrupt, and some more
+SPARE = 400  # bytes of the link's stack that a signature does not need: for an interrupt, with some margin
 TRIES = 20
 FAST_LINE = 2_000_000
 DENIALS = re.findall(r"^DENIAL\((\w+),", (wire.LINK / "denials.def").read_text("utf-8"), re.M)
 
 
 class Recorder(Tap):
-    """A line that keeps what goes to the board."""
+    """A line that records the bytes to the board."""
 
     def __init__(self, folder, port):
         self.heard = b""
@@ -52,7 +52,7 @@ class Owner(Switched):
         return next(thread for thread in rsc.info(self.board.port)["threads"] if thread["name"] == "link")
 
     def order(self, line, name, payload=b"", **changes):
-        """A stranger's signed order, right but for the signature; gives why it is denied."""
+        """Sends a stranger's signed order, correct except for the signature; returns why it is denied."""
         said = wire.unpack("Authority", line.ask("get_authority", reply="authority"))
         parts = {"signature": bytes(range(64)), "boot": said.boot, "number": said.next, "type": wire.NUMBERS[name],
                  "reserved": bytes(7), **changes}
@@ -63,8 +63,8 @@ class Owner(Switched):
         image = self.compile(PROGRAMS / "priorities.rsl")
         self.assertEqual(self.owner(), {"pairing": "unpaired", "key": None})
         said = rsc.run("monitor", "--port", self.board.port, "--duration", "50ms").splitlines()
-        self.assertIn("nobody: whoever has this line gives the robot orders, until `rsc pair`", said[1])
-        self.refused("there is no key: make one, rsc keygen", "pair")
+        self.assertIn("nobody: anyone on this line can give the robot orders, until `rsc pair`", said[1])
+        self.refused("there is no key: make one with rsc keygen", "pair")
 
         key = rsc.run("keygen").split(" is your key ")[1].split()[0]
         file = self.folder / "settings/robosync/key"
@@ -83,13 +83,13 @@ class Owner(Switched):
         self.upload(image)
 
     def pair(self):
-        """The board's first minute is short, since its time does not wait for the host's."""
+        """Tries several times: the board's first minute is short, since its time runs ahead of the host's."""
         for _ in range(TRIES):
             self.power_cycle()
             done = rsc.call("pair", "--port", self.board.port)
             if done.returncode == 0:
                 return done.stdout
-            self.assertIn("in the first minute after it was switched on", done.stderr)
+            self.assertIn("in the first minute after it is switched on", done.stderr)
         return self.fail("never in time")
 
     def owner_and_stranger(self, image):
@@ -103,7 +103,7 @@ class Owner(Switched):
         rsc.run("keygen", *other)
         for arguments in (("upload", image), ("resume",), ("unpair",), ("feed", "touch.LEVEL=1")):
             self.refused("the robot's owner has the key", *arguments, *other)
-        self.refused("has an owner already", "pair", *other)
+        self.refused("already has an owner", "pair", *other)
         self.refused("there is no key", "resume", "--key", self.folder / "none")
         with wire.Line(self.board.port) as stranger:
             self.replay(stranger, line.heard)
@@ -112,15 +112,15 @@ class Owner(Switched):
         for name in ("activations", "faults"):
             self.assertEqual(after["status"][name], before["status"][name])
         self.assertEqual(after["board"]["program"]["hash"], before["board"]["program"]["hash"])
-        rsc.run("stop", "--port", self.board.port)  # is for everybody
+        rsc.run("stop", "--port", self.board.port)  # everybody may send it
         self.refused("the robot's owner has the key", "resume", *other)
-        rsc.run("resume", "--port", self.board.port)  # waits until signatures are looked at again
+        rsc.run("resume", "--port", self.board.port)  # waits until the board verifies signatures again
         self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
         thread = self.link_thread()
         self.assertLess(thread["stack_used"] + SPARE, thread["stack_bytes"])
 
     def replay(self, stranger, heard):
-        """All frames but those of `stop`, which would stop it."""
+        """Replays all frames except those of `stop`, which would stop the robot."""
         frames = [part + b"\0" for part in heard.split(b"\0") if part and part + b"\0" != wire.frame("stop", sequence=255)]
         self.assertTrue(any(wire.uncobs(part[:-1])[0] == wire.NUMBERS["signed_order"] for part in frames))
         for part in frames:

@@ -1,4 +1,4 @@
-"""The board does what `rsc run` does, and both what the reference says, for drawn programs (tests/properties/differ.py)."""
+"""The board, `rsc run` and the reference do the same with random programs (tests/properties/differ.py)."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ import drawn  # noqa: E402
 from boards import Boards  # noqa: E402
 
 PROGRAMS = int(os.environ.get("ROBOSYNC_REFERENCE_PROGRAMS", "24"))
-# On this board a movement sometimes ends a millisecond late (docs/boards.md): not in these.
+# On this board a movement sometimes ends a millisecond late (docs/boards.md); with these seeds none does.
 SEEDS = (2, 9, 19, 21) if board.NAME == "b-l475e-iot01a" else range(PROGRAMS)
 MOST_REFUSED = 0.2  # of the programs, by the compiler or the board
 
@@ -53,7 +53,7 @@ class Reference(unittest.TestCase):
             self.assertIn('"actuator":"lamp"', comparison.first_other_line(wanted, other))
 
     def traces(self, told, played, folder):
-        """The lines of rsc with one program, and those of the board with another."""
+        """The lines of rsc with one program, and the board's with another."""
         def image(word):
             return comparison.compile_program(LAMP.format(word), folder, "-O1")[1]
 

@@ -1,15 +1,15 @@
-"""What the board did is recorded there, and runs again on this computer, to the same commands."""
+"""A recording of what the board did runs again on this computer, with the same commands."""
 
 import json
 import unittest
 
-from support import CONFIG, PROGRAMS, LineReader, RobotTest  # and where what follows is found
+from support import CONFIG, PROGRAMS, LineReader, RobotTest  # also makes the imports below work
 
 import rsc
 import stimuli
 
 FIRST_LEAD_MS = 8_000  # program time left to get the readings onto the board
-ATTEMPTS = 6  # a busy machine may read the trace too late; the recording says so, and it is done again
+ATTEMPTS = 6  # a busy machine may read the trace too late; the recording says so, and the test tries again
 TICKING = "EVERY {} DO MOVE left_arm TO {}deg OVER 50ms END\n"
 
 
@@ -41,7 +41,7 @@ class Replay(RobotTest):
         one, = self.replayed(recording)
         self.assertGreater(one["commands"], 0)
         self.assertGreaterEqual(one["until_us"], (lead_ms + readings[-1].at_ms) * 1000)
-        # It can differ: one command is missing.
+        # A difference is detected: here one command is missing.
         lines = recording.read_text().splitlines(keepends=True)
         commands = [i for i, line in enumerate(lines) if '"event":"command"' in line]
         del lines[commands[0]]
@@ -52,7 +52,7 @@ class Replay(RobotTest):
         self.check(PROGRAMS / "priorities.rsl", stimuli.PRIORITIES)
 
     def test_an_algorithm(self):
-        """Its readings are told to the program; nothing measures, and no module runs."""
+        """The program gets the algorithm's recorded readings; nothing measures, and no module runs."""
         self.units = stimuli.FEELING_UNITS
         self.check(PROGRAMS / "feeling.rsl", stimuli.touches(0), PROGRAMS / "feeling.json")
 

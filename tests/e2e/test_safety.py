@@ -1,4 +1,4 @@
-"""SAFETY rules over sensors that fall silent: they trip on the board when they do on the host, to the millisecond,
+"""SAFETY rules over sensors that fall silent: they trip on the board at the same millisecond as on the host,
 whenever the program was started."""
 
 import json
@@ -34,7 +34,7 @@ ROBOT = {"sensors": [sensor("range_left"), sensor("range_right")],
 
 
 def readings():
-    """Both measure at odd times; each falls silent once, and comes back."""
+    """Both sensors measure at odd times; each falls silent once, and comes back."""
     for at in range(0, 6000, 97):
         if not 1800 < at < 3100:
             yield Reading(at, "range_left.DISTANCE", 40 + at % 13)

@@ -1,6 +1,6 @@
-"""Servos on a PCA9685, on the shipped firmware. No emulator has that chip. At 0x40 there is nobody: that is told, the outputs stay
-off, and all else goes on. At 0x41 stands a thermometer of 32 degrees: it acknowledges whatever it is told, and register 0 of it reads as
-that of a PCA9685 that runs. It gives no pulses; what the firmware does with the enable pin meanwhile is its own."""
+"""Servos on a PCA9685, on the shipped firmware. No emulator has that chip. At 0x40 there is no device: the firmware reports that,
+the outputs stay off, and everything else continues. At 0x41 there is a thermometer of 32 degrees: it acknowledges every write, and
+its register 0 reads like that of a running PCA9685. It gives no pulses, but the firmware's use of the enable pin is real."""
 
 import json
 import sys
@@ -20,7 +20,7 @@ from counting import symbols  # noqa: E402
 PATIENCE = 20
 ON, OFF = 0, 1  # levels at OE
 FIRST_ENABLE, WORD = 36, 4
-NOBODY, STAND_IN = 36, 37  # by their enable pins
+NOBODY, STAND_IN = 36, 37  # the chips' enable pins
 WHILE_NOTHING_MOVES = 1.0  # seconds
 ADDRESS = {NOBODY: 0x40, STAND_IN: 0x41}
 RUNS, ASLEEP = 32_000, 17_000  # thousandths of a degree: MODE1 would be 0x20, 0x11
@@ -72,7 +72,7 @@ class ServoChip(DebuggedTest):
             rsc.run("feed", f"near.X={value}", "--port", self.board.port)
 
     def begin(self):
-        """The arm moves."""
+        """Uploads the program and makes the arm move."""
         done = self.say("upload", self.written(STAND_IN))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("does not answer", done.stderr)

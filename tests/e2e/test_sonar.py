@@ -1,5 +1,5 @@
-"""The ultrasonic sensor on the boards' firmware: the test is the part, and the trace shows what it was told. ROBOSYNC_BOARD
-says on which board."""
+"""The ultrasonic sensor on the boards' firmware: the test plays the sensor, and the trace shows its readings. ROBOSYNC_BOARD
+selects the board."""
 
 import json
 import sys
@@ -103,14 +103,14 @@ def on_edge(prefix):
 
 @unittest.skipUnless(NAME in ("b-l475e-iot01a", "nucleo-l476rg"), "QEMU has no edges of pins elsewhere")
 class OfEdges(Sonar):
-    """The core stands still while the test changes a level; between two kicks of the watchdog it runs for 10 ms."""
+    """The core is stopped while the test changes a level; between two kicks of the watchdog it runs for 10 ms."""
 
     def setUp(self):
         super().setUp()
         self.wires.set(ECHO, False)
 
     def echo(self, debugger, level_changes):
-        """From the next pulse on: at each kick of the watchdog, the next level."""
+        """From the next pulse on, sets the next level at each kick of the watchdog."""
         debugger.run_to(on_edge("Board::ping("), lambda: None)
         debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
         for high in level_changes:
@@ -125,7 +125,7 @@ class OfEdges(Sonar):
                 self.echo(debugger, (True, False))
         self.await_distance(reader, KICK_US / US_PER_CM, 2)
         self.assertNotIn(True, [value is not None and abs(value - KICK_US / US_PER_CM) > 2 for value in self.distances(reader.lines)])
-        self.await_event(reader, event="silent")  # afterwards nobody answers
+        self.await_event(reader, event="silent")  # afterwards there are no echoes
 
     def test_an_echo_that_stays_and_edges_that_nobody_asked_for_are_no_reading(self):
         self.upload(self.folder / "sonar.rsl", "--config", self.folder / "sonar.json")
@@ -143,7 +143,7 @@ class OfEdges(Sonar):
         self.assertFalse(reader.wait_for(self.distances, 1), reader.lines)
 
     def test_what_a_measurement_costs(self):
-        """From the guard on, its pulse and both edges, and its sample: what costs.def says, and no more than 1,500 in all."""
+        """From the guard on, the pulse with both edges, and the sample: at most the values in costs.def, and 1,500 in all."""
         self.begin()
         listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
         said = {name: int(line.split(",")[1].replace("'", "")) for name in ("ping", "echo")
@@ -162,7 +162,7 @@ class OfEdges(Sonar):
         self.assertLessEqual(asked + sum(edges) + read, 1500)
 
     def counted(self, debugger, place):
-        """Instructions from there until it returns, of which none is an interrupt's."""
+        """Instructions from there until it returns, without those of interrupts."""
         debugger.run_to(place, lambda: None)
         back = debugger.register(LINK_REGISTER)
         mode, steps = debugger.mode(), 0

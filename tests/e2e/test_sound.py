@@ -1,5 +1,5 @@
-"""A sound player on the board's serial line: what comes out of the emulated UART is what a DFPlayer Mini is told. The micro:bit's
-line has a module that no emulator has; on_microbit.py looks at what that is told. Which board it is says ROBOSYNC_BOARD."""
+"""A sound player on the board's serial line: the emulated UART sends the bytes that a DFPlayer Mini expects. No emulator has the
+module of the micro:bit's line; on_microbit.py checks its registers. ROBOSYNC_BOARD selects the board."""
 
 import json
 import re
@@ -18,7 +18,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import Marks, ends_of, functions, plugin_arguments
 
 PATIENCE = 20
-# UARTs between that of the link and this one, as QEMU counts them; the Nucleo's is the one before that of the link.
+# UARTs between the link's and this one, as QEMU counts them; the Nucleo's comes right before the link's.
 LINES_BETWEEN = {"mps2-an386": 0, "b-l475e-iot01a": 2}
 LENGTH = 10
 SILENCE = 0
@@ -44,7 +44,7 @@ COSTS = (ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
 
 
 def command(number, high, low):
-    """DFPlayer Mini's manual, "Serial mode": the check is what all bytes between begin and check, itself included, need for 0."""
+    """DFPlayer Mini's manual, "Serial mode": with the checksum, all bytes after the start byte add up to 0."""
     body = [0xFF, 6, number, 0, high, low]
     check = -sum(body) & 0xFFFF
     return bytes([0x7E, *body, check >> 8, check & 0xFF, 0xEF])
@@ -80,7 +80,7 @@ class PlayerTest(RobotTest):
         return rsc.run(verb, *arguments, "--port", self.board.port)
 
     def begin(self):
-        """SAFETY knows nothing bad."""
+        """Uploads the program with a reading that SAFETY accepts."""
         self.say("upload", *self.written(PLAYS))
         self.say("feed", "near.X=0")
 
@@ -98,9 +98,9 @@ class PlayerTest(RobotTest):
 class Sound(PlayerTest):
     def test_it_plays_what_the_program_says_and_is_silent_when_that_ends(self):
         self.begin()
-        self.await_sounds(SILENCE)  # nobody knows what it plays
+        self.await_sounds(SILENCE)  # the player may be playing anything
         self.say("feed", "near.X=20")
-        self.await_sounds(SILENCE, 2, 3)  # one takes the place of the other
+        self.await_sounds(SILENCE, 2, 3)  # the second replaces the first
         self.say("feed", "near.X=40")
         self.await_sounds(SILENCE, 2, 3, SILENCE)
         self.say("feed", "near.X=60")
@@ -134,7 +134,7 @@ class Cost(PlayerTest):
         return [*plugin_arguments(self.known, self.marks), *super().qemu_arguments()]
 
     def most(self, marks, begin, end):
-        """Instructions of the longest way from one to the other with nothing in between."""
+        """Most instructions from one mark to the other with no mark in between."""
         pairs = zip(marks.all, marks.all[1:])
         return max(after - before for (name, before), (other, after) in pairs if (name, other) == (begin, end))
 

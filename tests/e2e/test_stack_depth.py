@@ -1,7 +1,7 @@
-"""No thread of any firmware can leave its stack: the deepest way through its code, with what an interrupt puts on it, fits.
+"""No thread of any firmware can overflow its stack: its deepest call path, plus the frames of an interrupt, fits.
 
-How deep a thread stands when it is interrupted is chance, so a board that runs well for minutes shows nothing: an actuator's
-thread with 108 bytes too few was stopped once in some hundred programs.
+How deep a thread is when it is interrupted is random, so a board that runs well for minutes proves nothing: an actuator's
+thread with 108 bytes too few was stopped once in several hundred programs.
 """
 
 import re
@@ -15,7 +15,7 @@ from stack_depth import FPU_FRAMES, FRAMES, GUARD, Firmware, StackError
 ROOT = Path(__file__).resolve().parents[2]
 BUILDS = {"mps2-an386": "m4", "b-l475e-iot01a": "b-l475e-iot01a", "nucleo-l476rg": "b-l475e-iot01a/nucleo-l476rg",
           "microbit-v2": "microbit-v2"}
-# Of each thread: what stands on its stack besides its own, its entry, and where the size of its stack is told.
+# For each thread: the bytes of frames on its stack besides its own, its entry, and where the size of its stack is defined.
 MEMORY, LAMBDA = "runtime-m4/policy/memory.hpp", r"\(.*::\{lambda\(void\*\)#1\}::_FUN"
 THREADS = {
     "safety": (FRAMES + GUARD, "safety::Monitor::start" + LAMBDA, "runtime-m4/safety/monitor.hpp", "kStack"),
@@ -25,15 +25,15 @@ THREADS = {
     "sensor": (FRAMES + GUARD, "layers::SensorLayer::start_sensor" + LAMBDA, MEMORY, "kSensorStack"),
     "feeds": (FRAMES + GUARD, "layers::SensorLayer::start_feeds" + LAMBDA, MEMORY, "kSensorStack"),
     "algorithms' server": (FRAMES + GUARD, "layers::AlgorithmLayer::start_server" + LAMBDA, MEMORY, "kSensorStack"),
-    "behavior": (FRAMES, "layers::BehaviorLayer::start_unit" + LAMBDA, MEMORY, "kBehaviorStack"),  # without privileges
+    "behavior": (FRAMES, "layers::BehaviorLayer::start_unit" + LAMBDA, MEMORY, "kBehaviorStack"),  # unprivileged
     "SAFETY's bytecode": (FRAMES, r"safety::\(anonymous namespace\)::run_bytecode\(", MEMORY, "kSafetyStack"),  # the same
-    # … and it counts as having used the FPU (switch.S).
+    # Unprivileged, too; it counts as having used the FPU (switch.S).
     "algorithm": (FPU_FRAMES, "layers::AlgorithmLayer::start_unit" + LAMBDA, MEMORY, "kModuleStack"),
 }
 
 
 def size_of(path, name, board):
-    """As the header says it; where it says two, the second is of a board without authentication."""
+    """The size from the header; if there are two, the second is for a board without authentication."""
     told = re.search(rf"\b{name} =\s+([^;]*);", (ROOT / path).read_text("utf-8"))[1]
     sizes = [int(number) for number in re.findall(r"\d+", told)]
     return sizes[-1] if board == "microbit-v2" else sizes[0]
@@ -54,7 +54,7 @@ class StackDepth(unittest.TestCase):
         self.assertEqual(wrong, [])
 
 
-# What each function takes, and what each way does, is known here.
+# Code for which the bytes of each function and each call path are known.
 CODE = """
     .syntax unified
     .cpu cortex-m4
@@ -131,8 +131,8 @@ class Analysis(unittest.TestCase):
             return firmware.deepest(firmware.entry(f"^{name}$"))
 
         self.assertEqual(deepest("leaf"), (32, False, ("leaf",)))
-        self.assertEqual(deepest("deep"), (104, False, ("deep",)))  # and its loop is no recursion
-        self.assertEqual(deepest("caller"), (104, False, ("caller", "deep")))  # whose own 20 are gone then
+        self.assertEqual(deepest("deep"), (104, False, ("deep",)))  # its loop is not a recursion
+        self.assertEqual(deepest("caller"), (104, False, ("caller", "deep")))  # a tail call: the caller's own 20 bytes are released
         self.assertEqual(deepest("both"), (108, False, ("both", "caller", "deep")))
         self.assertEqual(deepest("computes"), (36, True, ("computes", "leaf")))
         self.assertEqual(deepest("robosync_call_in_sandbox"), (8, False, ("robosync_call_in_sandbox",)))

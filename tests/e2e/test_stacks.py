@@ -1,8 +1,8 @@
-"""A sensor that is interrupted where its driver is deepest has room for that.
+"""A sensor's stack has room for an interrupt at the deepest point of its driver.
 
-How often it is interrupted just there is chance, so a board that runs well for minutes shows nothing. Here its stack is
-measured at that place with the debugger, and what the core and the switch put on it is added.
-Where there is far too little, the sensor's thread is stopped while the debugger waits for it, which times out.
+How often an interrupt comes exactly there is random, so a board that runs well for minutes proves nothing. Here the debugger
+measures the stack at that point, and the bytes pushed by the core and the context switch are added.
+If the stack is far too small, the sensor's thread is stopped while the debugger waits for it, which times out.
 """
 
 import sys
@@ -19,9 +19,9 @@ from counting import of_the_board, symbols  # noqa: E402
 
 SP = 13
 HALF_BIT = "I2c::half_bit() const"
-TIMES = 1500  # some samples' worth
+TIMES = 1500  # enough for several samples
 PAINT = 0xA5A5A5A5
-UNTOUCHED = 3  # so many painted words in a row were never used
+UNTOUCHED = 3  # this many painted words in a row count as never used
 CONFIG = """{
   "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
                "channels": {"LEVEL": {"input": 0, "range": [0, 10], "rate": "50Hz"}}}],

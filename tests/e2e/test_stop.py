@@ -133,7 +133,7 @@ class Stop(DebuggedTest):
         self.refuses("<BBH", (LIGHTS_DRIVER, 0, 0), "does not have the driver `lights`")
 
     def refuses(self, form, wiring, why):
-        """The program, with the motor's wiring changed."""
+        """Checks that the board refuses the program with the motor's wiring changed."""
         image = self.compiled(PROGRAM)
         self.say("upload", image)
         damaged = bytearray(image.read_bytes())

@@ -1,5 +1,5 @@
-"""What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that stood its trial. A new
-QEMU with the same file is a board that was switched off and on."""
+"""What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that passed its trial. A new
+QEMU with the same file plays a board that was switched off and on."""
 
 import json
 import sys
@@ -18,10 +18,10 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
 PATIENCE = 20
-KEEP_ATTEMPTS = 5  # on a machine that stands still now and then
+KEEP_ATTEMPTS = 5  # for a machine that stalls now and then
 SOON_US = 100_000  # from power-up to the first step
-LARGEST_SOON = 4_096  # bytes of an image that comes so soon
-STEADY, OTHER = 5, 3000  # what the sensor's inputs measure
+LARGEST_SOON = 4_096  # bytes of the largest image that starts so soon
+STEADY, OTHER = 5, 3000  # the values at the sensor's inputs
 STEADY_CONFIG = """{
   "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
                "channels": {"LEVEL": {"input": 0, "range": [0, 65535], "rate": "50Hz"},
@@ -45,8 +45,20 @@ END
 """
 
 
+FED_CONFIG = """{"sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
+ "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "120deg"]}]}"""
+FED_PROGRAM = """SAFETY pressed
+  WHEN touch LEVEL > 5
+  DO STOP ALL
+END
+WHEN touch LEVEL < 3 DO
+  MOVE arm TO 90deg
+END
+"""
+
+
 class Switched(RobotTest):
-    """A board that can be switched off and on. `icount`: where the clock of the wall must not run behind a trial, REAL_TIME."""
+    """A board that can be switched off and on. `icount`: REAL_TIME if a trial must not run ahead of real time."""
 
     icount = FAST
 
@@ -85,14 +97,14 @@ class Switched(RobotTest):
         return self.await_kept("kept")["program"]["hash"]
 
     def lost(self):
-        """A machine that stands still for 100 ms looks to the emulated watchdog, in real time, like a firmware that hangs: the board
-        was reset before the program was kept."""
+        """Whether the board was reset before the program was kept: when the host stalls for 100 ms, the emulated watchdog, which
+        runs in real time, assumes that the firmware hangs."""
         while (state := self.kept()["state"]) not in ("kept", "no_program"):
             pass
         return state == "no_program"
 
     def images(self):
-        """Two programs, and their CRCs when they ran here."""
+        """The images of two programs."""
         first = self.compile(PROGRAMS / "priorities.rsl")
         second = self.folder / "second.rsb"
         rsc.run("compile", PROGRAMS / "priorities.rsl", "--config", self.folder / "robot.json", "--seed", 1, "-o", second,
@@ -113,7 +125,7 @@ class Store(Switched):
             self.assertEqual(rsc.info(other.port)["board"]["program"]["hash"], said[1]["program"])
 
     def test_power_that_goes_and_resets_at_any_time_leave_a_kept_program(self):
-        """A few; `scripts/soak power` does more."""
+        """A few runs; `scripts/soak power` does more."""
         ends = []
         self.assertEqual(power_cuts.campaign(6, seed=1, show=lambda _, what: ends.append(what)), [])
         self.assertEqual({what.split()[0] for what in ends}, {"cut", "reset"})
@@ -128,8 +140,8 @@ class Store(Switched):
         self.assertEqual(self.running(), second)
 
     def test_sensors_on_its_bus_never_wait_for_it(self):
-        """While programs that measure a hundred times a second are written, no transfer fails, none is late, and none gives
-        another value than the sensor has."""
+        """While programs that measure a hundred times a second are written to the store, no transfer fails, none is late, and
+        none reads a wrong value."""
         (self.folder / "robot.json").write_text(STEADY_CONFIG)
         program, pulse = self.folder / "program.rsl", symbols(FIRMWARE)["robosync_virtual_pwm"]
         self.board.set_touch(STEADY)
@@ -167,7 +179,7 @@ class Failed(Switched):
 
 class Numbers(Switched):
     def visits(self):
-        """What it says at the next touch."""
+        """The texts that the program logs at the next touch."""
         reader = LineReader("feed", "touch.LEVEL=9", "touch.LEVEL=1", "--port", self.board.port, "--watch", "10s", "--format", "json")
         try:
             self.assertTrue(reader.wait_for(lambda lines: any('"log"' in line for line in lines), PATIENCE), reader.lines)
@@ -186,7 +198,7 @@ class Numbers(Switched):
         self.assertEqual(self.visits(), ["visit 1"])
         self.await_kept("kept")
         self.assertEqual(self.visits(), ["visit 2"])
-        time.sleep(1)  # some seconds of the board's
+        time.sleep(1)  # some seconds of the board's time
         self.board.cut_power()
         self.switch_on()
         self.await_kept("kept")
@@ -212,7 +224,7 @@ class Trial(Switched):
             self.assertLess(first.stat().st_size, LARGEST_SOON)
             self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
         said = self.upload(second)
-        self.assertRegex(said, r"kept in [45]\.\d s if it stands its trial; after a reset before then, the robot starts with")
+        self.assertRegex(said, r"kept in [45]\.\d s if it passes its trial; after a reset before then, the robot starts with")
         self.assertNotEqual(self.running(), kept)
         self.power_cycle()  # in its trial
         self.await_kept("kept")
@@ -224,8 +236,21 @@ class Trial(Switched):
         said = self.upload(second, "--no-confirm", "--trial", "300ms")
         self.assertIn("not kept: its trial is over; the program kept before runs again", said)
         self.assertEqual(self.running(), kept)
-        self.assertIn("only tried: in ", self.upload(second, "--no-confirm"))
-        self.assertIn("only tried: in ", rsc.run("info", "--port", self.board.port))
+        self.assertIn("only on trial: the kept program comes back in ", self.upload(second, "--no-confirm"))
+        self.assertIn("only on trial: the kept program comes back in ", rsc.run("info", "--port", self.board.port))
+
+    def test_feed_says_that_its_program_failed_its_trial(self):
+        kept = self.keep(self.images()[0])
+        config, program = self.folder / "fed.json", self.folder / "fed.rsl"
+        config.write_text(FED_CONFIG)
+        program.write_text(FED_PROGRAM)
+        fed = ("feed", "--upload", program, "--config", config, "--watch", "500ms", "--port", self.board.port)
+        done = rsc.call(*fed, "touch.LEVEL=9")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn(f"{program} failed its trial", done.stderr)
+        self.assertEqual(self.running(), kept)
+        rsc.run(*fed, "touch.LEVEL=1")
+        self.assertNotEqual(self.running(), kept)
 
     def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):
         kept = self.keep(self.compile(PROGRAMS / "priorities.rsl"))
@@ -251,7 +276,7 @@ class Trial(Switched):
 class NoStore(RobotTest):
     def test_it_says_so(self):
         said = self.upload(self.compile(PROGRAMS / "priorities.rsl"))
-        self.assertIn("not kept: this board has no store", said)
+        self.assertIn("not kept: this board has no working store", said)
         done = rsc.call("rollback", "--port", self.board.port)
         self.assertEqual(done.returncode, 1)
         self.assertIn("this board keeps no programs", done.stderr)

@@ -15,7 +15,7 @@ WHEN skin TEMPERATURE > 50C DO LOG "hot chip" END
 WHEN skin REMOTE > 40C DO LOG "hot hand" END
 """
 PATIENCE = 20
-STEP = 0.07  # degrees: of a TMP421, which the emulated one takes off
+STEP = 0.07  # degrees: a TMP421's resolution, by which the emulated one reads too low
 
 
 class Thermometers(RobotTest):
@@ -35,7 +35,7 @@ class Thermometers(RobotTest):
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         try:
             self.await_listening(reader)
-            # (what is warmed, to how much, the channel that says so, what the robot says then)
+            # (the device that is warmed, its temperature, the channel that reports it, the robot's reaction)
             for device, which, degrees, channel, said in (
                     ("room", "temperature", 31.5, "TEMPERATURE", "warm room"),
                     ("room", "temperature", -20.5, "TEMPERATURE", "frost"),

@@ -11,7 +11,7 @@ PATIENCE = 20
 
 
 def events(lines, **wanted):
-    """The events of a trace that have all the wanted values."""
+    """The events of a trace that have all of the wanted values."""
     found = (json.loads(line) for line in lines)
     return [e for e in found if all(e.get(key) == value for key, value in wanted.items())]
 
@@ -23,7 +23,7 @@ class Touch(RobotTest):
         self.upload(EXAMPLE)
 
     def monitor(self):
-        """rsc monitor, once it listens: the touch goes to and fro below the threshold until it says so."""
+        """rsc monitor, once it listens: until it shows a reading, the touch alternates below the threshold."""
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         for value in [1, 2] * 100:
             self.board.set_touch(value)

@@ -1,10 +1,10 @@
-"""The board and `rsc run` do the same, bit for bit, for programs of this folder and for drawn ones."""
+"""The board and `rsc run` do the same, bit for bit, with the programs in this folder and with random ones."""
 
 import itertools
 import json
 import unittest
 
-from support import PROGRAMS  # and where what follows is found
+from support import PROGRAMS  # also makes the imports below work
 from traces import CONFIG, TraceTest
 
 import rsc
@@ -34,7 +34,7 @@ class Traces(TraceTest):
         self.check(program, stimuli.drawn(2, program.read_text(), count=60))
 
     def test_adaptive_priorities(self):
-        """Ranks change at the same tick on both, and back again."""
+        """Ranks change, and change back, at the same tick on both."""
         config = self.folder / "adapting.json"
         robot = json.loads((PROGRAMS / "robot.json").read_text("utf-8"))
         robot["scheduler"] = {"alpha": 20, "window": "500ms"}
@@ -53,7 +53,7 @@ class Traces(TraceTest):
                 self.check(program, stimuli.drawn(seed, text), config)
 
     def test_algorithms(self):
-        """The modules of the firmware, on recordings that are made up: the board's run behind its MPU."""
+        """The firmware's modules, with synthetic recordings: the board's modules run behind its MPU."""
         for name, units, recording, words in (
                 ("feeling", stimuli.FEELING_UNITS, stimuli.touches, {"tap", "pat", "stroke", "firm"}),
                 ("moving", stimuli.MOVING_UNITS, stimuli.motions,
@@ -78,7 +78,7 @@ class Traces(TraceTest):
         return self.folder / f"drawn{seed}.rsl"
 
     def draw(self, seed):
-        """False when the program that is drawn is too large for a robot."""
+        """Draws a random program; False if it is too large for a robot."""
         program = self.drawn(seed)
         program.write_text(Generator(seed).program())
         return TOO_LARGE not in rsc.call("check", "--config", CONFIG, program).stderr

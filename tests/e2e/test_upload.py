@@ -25,7 +25,7 @@ class Upload(RobotTest):
         self.assertEqual(after["activations"] - before["activations"], 12)
         self.assertEqual(after["reset_reason"], "power")
         self.assertEqual(after["faults"], 0)
-        # No period is left out, and each program begins one; info's own two questions may lie in different periods.
+        # No period is skipped, and each program begins a new one; the two requests of `rsc info` may be in different periods.
         checks = after["safety_checks"] - before["safety_checks"]
         self.assertGreaterEqual(checks, passed // SAFETY_PERIOD_US - 2)
         self.assertLessEqual(checks, passed // SAFETY_PERIOD_US + 2 + 12)
@@ -76,7 +76,7 @@ class Upload(RobotTest):
             self.assertTrue(all("  running; " in row for row in table[1:]), table)
 
     def test_an_image_for_another_board_is_refused(self):
-        other = "microbit-v2" if NAME == REFERENCE else REFERENCE  # which have the pins of this robot
+        other = "microbit-v2" if NAME == REFERENCE else REFERENCE  # both have the pins of this robot
         config = self.folder / "other.json"
         config.write_text(json.dumps({**json.loads(CONFIG.read_text()), "board": other}))
         done = rsc.call("upload", PROGRAMS / "paper.rsl", "--config", config, "--port", self.board.port)

@@ -1,16 +1,16 @@
-"""What the board does and what `rsc run` does, line by line: same image, same readings, same trace."""
+"""Compares the board with `rsc run`, line by line: same image, same readings, same trace."""
 
 import json
 
 from support import CONFIG, LineReader, RobotTest, host_trace
 
 FIRST_LEAD_MS = 6_000  # program time left to get the readings onto the board
-AFTER_MS = 12_000  # program time in which everything started comes to its end
+AFTER_MS = 12_000  # program time in which everything that was started ends
 PATIENCE = 60  # seconds for the board to get there, on a loaded machine
-CHIPS = ("pca9685", "ssd1306")  # a bus of QEMU has none of them, and a simulation asks none
-QUIET = 0.5  # seconds in which no line too many may come
+CHIPS = ("pca9685", "ssd1306")  # QEMU's buses have none of them, and a simulation does not use them
+QUIET = 0.5  # seconds in which no extra line may come
 # The board's virtual time does not wait for this machine: a busy one may feed too late, or lose
-# events because it reads too late. The board says so, and it is done again.
+# events because it reads too late. The board reports that, and the test tries again.
 ATTEMPTS = 8
 
 
@@ -38,7 +38,7 @@ class TraceTest(RobotTest):
         return lines
 
     def board_trace(self, image, scenario, count, until_ms):
-        """The board's lines from activation on; `count` are expected, more are waited for a little."""
+        """The board's lines from activation on; expects `count`, then waits briefly for extra ones."""
         reader = LineReader("feed", "--upload", image, "--fresh", "--scenario", scenario, "--port",
                             self.board.port, "--watch", f"{2 * PATIENCE}s", "--format", "json")
         reader.wait_for(lambda lines: len(own(lines)) >= count, PATIENCE)
@@ -50,7 +50,7 @@ class TraceTest(RobotTest):
 
 
 def own(lines):
-    """Without what the program before did, nor that a chip does not answer."""
+    """Removes the lines of the program before, and reports that a chip does not answer."""
     starts = [i for i, line in enumerate(lines) if '"event":"activated"' in line]
     mine = lines[starts[0]:] if starts else []
     return [line for line in mine if not ('"event":"silent"' in line and any(f'"sensor":"{chip}"' in line for chip in CHIPS))]

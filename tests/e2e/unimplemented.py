@@ -1,4 +1,4 @@
-"""What the firmware tells peripherals that QEMU does not have: QEMU writes it down."""
+"""The firmware's writes to peripherals that QEMU does not implement: QEMU logs them."""
 
 import re
 
@@ -10,10 +10,10 @@ def log_in(folder):
 
 
 def arguments(folder):
-    """For QEMU."""
+    """QEMU's options for the log."""
     return ["-d", "unimp", "-D", str(log_in(folder))]
 
 
 def told(folder, place):
-    """The values that were written there so far: (peripheral, offset of a register)."""
+    """The values that have been written to `place`: (peripheral, offset of a register)."""
     return [int(value, 16) for name, at, value in WRITE.findall(log_in(folder).read_text()) if (name, int(at, 16)) == place]

@@ -1,7 +1,7 @@
-"""A second implementation of the serial protocol, so that the tests can also speak it wrongly.
+"""A second implementation of the serial protocol, so that the tests can also violate it.
 
-COBS and the CRC are written anew; message numbers and payload layouts are read from link/, so that
-they stand in one place. Read link/frame.hpp and link/messages.hpp for what the parts mean.
+COBS and the CRC are implemented again; message numbers and payload layouts are read from link/, so that
+they have one definition. For their meaning see link/frame.hpp and link/messages.hpp.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ LINK = Path(__file__).resolve().parents[2] / "link"
 TYPES = {"std::uint8_t": "B", "std::int8_t": "b", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
          "std::int32_t": "i", "std::uint64_t": "Q", "Name": "16s",
          "ProgramHash": "8s", "SessionId": "I"}
-CRC_AT, NAME_AT, LINES_AT = 4, 16, 64  # ImageHeader: CRC-32 of everything behind it; program_hash; source_lines
+CRC_AT, NAME_AT, LINES_AT = 4, 16, 64  # ImageHeader: CRC-32 of everything after it; program_hash; source_lines
 
 
 def _read_numbers():
@@ -34,7 +34,7 @@ def _read_enums(text):
 
 
 def _enum_names(text):
-    """Also of those whose list is a .def."""
+    """Also those whose values come from a .def file."""
     return set(re.findall(r"enum class (\w+) : std::uint8_t", text))
 
 
@@ -90,17 +90,17 @@ def activation(session, name):
 
 
 def piece_head(session, offset):
-    """What `data` begins with, and `pieces`."""
+    """The head of `data` and `pieces`."""
     return pack("Data", session=session & 0xFFFF, offset=offset)
 
 
 def name_of(image):
-    """What its header says, with which the protocol names it."""
+    """The name in its header, which the protocol uses for it."""
     return image[NAME_AT:NAME_AT + 8].ljust(8, b"\0")
 
 
 def sealed(image):
-    """The same bytes with name and checksum put right, as vm/identity.hpp says. `image` has a whole header."""
+    """The same bytes with name and checksum corrected according to vm/identity.hpp. `image` has a complete header."""
     lines, = struct.unpack_from("<H", image, LINES_AT)
     counted = bytearray(image[:len(image) - 4 * lines])
     for at, length in ((CRC_AT, 8), (NAME_AT, 8), (LINES_AT, 2)):
@@ -109,7 +109,7 @@ def sealed(image):
 
 
 def with_crc(image):
-    """The same bytes with the checksum put right."""
+    """The same bytes with the checksum corrected."""
     return image[:CRC_AT] + struct.pack("<I", zlib.crc32(image[CRC_AT + 4:])) + image[CRC_AT + 4:]
 
 
@@ -157,7 +157,7 @@ class Line:
         self._socket.sendall(data)
 
     def ask(self, name, payload=b"", reply=None):
-        """Sends a message and gives the payload of the next `reply`, past events and logs."""
+        """Sends a message and returns the payload of the next `reply`, skipping events and logs."""
         self._sequence = (self._sequence + 1) % 256
         self.send_raw(frame(name, payload, self._sequence))
         return self.expect(reply)
@@ -208,7 +208,7 @@ class Line:
         return pack("Begin", session=self.session, size=size, hash=name, base=bytes(8))
 
     def transfer(self, image):
-        """Sends an image as it stands; gives the last transfer_status."""
+        """Sends an image as it is; returns the last transfer_status."""
         self._name = name_of(image)
         reply = self.ask("begin", self.beginning(len(image), self._name), "transfer_status")
         status = unpack("TransferStatus", reply)
@@ -220,9 +220,9 @@ class Line:
         return status
 
     def resumption(self):
-        """Of what it asks with `resume`."""
+        """The payload of `resume`."""
         return pack("Resume", session=self.session)
 
     def activate(self):
-        """What was transferred last."""
+        """Activates the image that was transferred last."""
         return unpack("ActivateResult", self.ask("activate", activation(self.session, self._name), reply="activate_result"))

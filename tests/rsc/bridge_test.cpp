@@ -189,7 +189,7 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
 
   const std::string large(2000, '1'), binary("x\0y", 3);
   subscriber.publish("robosync/pet/do/feed/touch/LEVEL", large);
-  CHECK(subscriber.wait_for("robosync/pet/refused", "2000 bytes are no reading"));
+  CHECK(subscriber.wait_for("robosync/pet/refused", "2000 bytes are too many for a reading"));
   subscriber.publish("robosync/pet/do/feed/touch/LEVEL", binary);
   CHECK(subscriber.wait_for("robosync/pet/refused", "x\xEF\xBF\xBDy"));
 

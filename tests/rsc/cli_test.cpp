@@ -109,9 +109,9 @@ TEST_CASE("an option that does not know a word says what it knows") {
              Contains("--format is human or json or sarif, not `yaml`"));
   CHECK_THAT(test::rsc({"dump", "robot.rsl", "-O3"}).err, Contains("-O is 0 or 1, not `3`"));
   CHECK_THAT(test::rsc({"upload", "robot.rsl", "--port"}).err,
-             Contains("--port needs its PORT behind it"));
+             Contains("--port needs PORT after it"));
   CHECK_THAT(test::rsc({"run", "robot.rsl", "--seed", "1", "--seed", "2"}).err,
-             Contains("--seed may be there once only"));
+             Contains("--seed may be given only once"));
 }
 
 TEST_CASE("an option in front of the verb is told where it belongs") {
@@ -119,7 +119,7 @@ TEST_CASE("an option in front of the verb is told where it belongs") {
        std::vector<std::vector<std::string>>{{"--format", "json", "check", "robot.rsl"}, {"-v"}}) {
     const Outcome outcome = test::rsc(arguments);
     CHECK(outcome.exit == 2);
-    CHECK_THAT(outcome.err, Contains("`" + arguments[0] + "` stands where a verb does"));
+    CHECK_THAT(outcome.err, Contains("`" + arguments[0] + "` is not a verb"));
   }
   CHECK(test::rsc({"--version"}).exit == 0);
   CHECK(test::rsc({"--help"}).exit == 0);
@@ -131,7 +131,7 @@ TEST_CASE("an option that is given nothing is refused") {
     const Outcome outcome = test::rsc({"run", "robot.rsl", option, ""});
     CAPTURE(option, outcome.err);
     CHECK(outcome.exit == 2);
-    CHECK_THAT(outcome.err, Contains(std::string(option) + ": it is given nothing"));
+    CHECK_THAT(outcome.err, Contains(std::string(option) + ": it is empty"));
   }
 }
 

@@ -201,7 +201,7 @@ TEST_CASE("TESTs and scenarios feed a companion's channels as any sensor's") {
     {"from": "1s", "to": "2s", "sensor": "voice", "ramp": ["silence", "very_well"]}]})");
   const Outcome ramp = test::rsc({"run", program, "--scenario", scenario});
   CHECK(ramp.exit == 1);
-  CHECK_THAT(ramp.err, Contains("s.json:2: WORD has words, and there is nothing between two words: "
+  CHECK_THAT(ramp.err, Contains("s.json:2: WORD has words, and nothing lies between two words: "
                                 "write a stimulus with `at` and `value` for each"));
 }
 
@@ -310,9 +310,8 @@ TEST_CASE("a program that ends well is over, one that was asked wrongly is given
 
 TEST_CASE("a program that dies is started again, each time later") {
   Watched dies("echo WORD a; echo 'it is\tgone' >&2; exit 3");
-  CHECK(dies.reports_contain("started again in 1 s"));
-  CHECK_THAT(dies.reports,
-             Contains("has ended (exit 3): it is?gone; it is started again in 0.5 s"));
+  CHECK(dies.reports_contain("restarting it in 1 s"));
+  CHECK_THAT(dies.reports, Contains("has ended (exit 3): it is?gone; restarting it in 0.5 s"));
   CHECK(dies.lines.size() == 2);
   Watched crashes("kill -SEGV $$");
   CHECK(crashes.reports_contain("signal 11"));
@@ -323,11 +322,11 @@ TEST_CASE("a program that dies is started again, each time later") {
 TEST_CASE("a program that says nothing any more hangs, and is ended") {
   const auto start = tool::Worker::Clock::now();
   Watched hangs("echo WORD a; sleep 1000");
-  CHECK(hangs.reports_contain("it hangs; it is started again"));
+  CHECK(hangs.reports_contain("it hangs; restarting it"));
   CHECK(tool::Worker::Clock::now() - start < 5s);
   Watched babbles("echo WORD a; while sleep 0.01; do echo garbage; done");
-  CHECK(babbles.reports_contain("it hangs; it is started again"));
-  CHECK_THAT(babbles.reports, Contains("says what is no reading: garbage"));
+  CHECK(babbles.reports_contain("it hangs; restarting it"));
+  CHECK_THAT(babbles.reports, Contains("sent something that is not a reading: garbage"));
 }
 
 TEST_CASE("nothing that a program says takes more room, or time, than there is") {
@@ -437,8 +436,8 @@ TEST_CASE("values that are none of the channel's are said, and never fed") {
   ears.works("face-detect",
              "while sleep 0.05; do echo COUNT 21; echo COUNT -1; echo COUNT nan; done");
   Running companion(ears.call());
-  REQUIRE(companion.has_said("voice: says what is no reading: WORD bye", 1));
-  REQUIRE(companion.has_said("face: says what is no reading: COUNT 21", 1));
+  REQUIRE(companion.has_said("voice: sent something that is not a reading: WORD bye", 1));
+  REQUIRE(companion.has_said("face: sent something that is not a reading: COUNT 21", 1));
   CHECK(companion.end(SIGINT).out.empty());
 }
 
@@ -448,7 +447,7 @@ TEST_CASE("a robot that goes away and comes back is fed again") {
   Running companion(ears.call());
   REQUIRE(has_put(companion, "face COUNT 0.000"));
   ears.bridge.hang_up();
-  REQUIRE(companion.has_said("the line is there again", 1));
+  REQUIRE(companion.has_said("the line is back", 1));
   CHECK(has_put(companion, "face COUNT 0.000", 2));
   CHECK(companion.end(SIGINT).exit == 0);
 }
@@ -517,7 +516,7 @@ TEST_CASE("what is missing is said before anything begins") {
   fails(ears.call({"--camera", "/dev/video99"}), 3, "there is no file or device /dev/video99");
   fails(ears.call({"--microphone", ears.path("no.wav")}), 3, "there is no file or device");
   std::filesystem::remove(ears.path("robosync-face-detect"));
-  fails(ears.call(), 3, "face: the program of the module face_detect is not installed");
+  fails(ears.call(), 3, "face: the program for the module face_detect is not installed");
   fails({"companion"}, 2, "--port");
   ears.write("robot.json", test::kRobot);
   fails(ears.call(), 1, "has no algorithm that runs on a companion computer");

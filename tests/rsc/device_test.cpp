@@ -115,8 +115,8 @@ TEST_CASE("a scenario for a program that runs already counts from now") {
   CHECK(device.run({"feed", "--scenario", scenario}).exit == 0);
   outcome = device.run({"feed", "touch.LEVEL=2", "--at", "10ms"});
   CHECK(outcome.exit == 1);
-  CHECK_THAT(outcome.err, Contains("the program is already past 10 ms: --at is a time of the "
-                                   "program; without it they are for now"));
+  CHECK_THAT(outcome.err, Contains("the program is already past 10 ms: --at is a program time; "
+                                   "without it the readings are for now"));
 }
 
 TEST_CASE("a scenario that is fed with the program may begin with it") {
@@ -131,7 +131,7 @@ TEST_CASE("a scenario that is fed with the program may begin with it") {
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   CHECK(touches(outcome.out) == std::vector<double>{1, 2, 3, 4, 5});
-  CHECK_THAT(outcome.err, Contains("of the first moments came a little later than due"));
+  CHECK_THAT(outcome.err, Contains("due right at the start came a little late"));
   // Nothing is uploaded for one that is wrong.
   device.write("visit.json", R"({"stimuli": [{"at": "0s", "sensor": "touch", "value": "x"}]})");
   const json before = json::parse(device.run({"info", "--format", "json"}).out);
@@ -149,7 +149,7 @@ TEST_CASE("a sensor whose bus is held down is told at the upload, by info and by
   const std::string file = device.write("touch.rsl", "WHEN touch LEVEL > 5 DO\n  MOVE arm\nEND\n");
   const auto says_held = [](const std::string& text) {
     CHECK_THAT(text, Contains("touch at address 0x70 on i2c bus 0 does not answer (") &&
-                         Contains("a line of that bus is held down"));
+                         Contains("a line of that bus is held low"));
   };
 
   Outcome outcome = device.run({"upload", file, "--config", device.path("robot.json")});
@@ -313,7 +313,7 @@ TEST_CASE("a monitor finds a line again that was closed, and says so") {
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit == 0);
   CHECK_THAT(outcome.err, Contains("looking for it again") &&
-                              Contains("the line is there again; what happened meanwhile"));
+                              Contains("the line is back; what happened meanwhile"));
   CHECK_THAT(outcome.out, Contains("log: tick"));
   // The recording has a gap there, which replay respects.
   outcome = test::rsc({"replay", folder.path("r.jsonl"), "--format", "json"});

@@ -63,7 +63,7 @@ TEST_CASE("flash copies the file that the board's drive takes, and says so") {
     CHECK(outcome.exit == 0);
     CHECK(computer.read("drive/robosync-" + kBoard + ".bin") == kFirmware);
     CHECK_THAT(outcome.out,
-               Contains(fmt::format("copies {} ({} bytes) to the drive {}", computer.bin,
+               Contains(fmt::format("copying {} ({} bytes) to the drive {}", computer.bin,
                                     kFirmware.size(), computer.path("drive"))) &&
                    Contains("rsc info"));
   }
@@ -86,6 +86,23 @@ TEST_CASE("flash calls openocd, else pyocd, and says with which words") {
   std::filesystem::remove(computer.path("pyocd.told"));
   CHECK(computer.flash({computer.hex, "--by", "pyocd"}).exit == 0);
   CHECK(computer.has("pyocd.told"));
+}
+
+TEST_CASE("flash calls dfu-util for a chip with a DFU boot loader, and for no other") {
+  const Computer computer;
+  computer.install("dfu-util");
+  const Outcome outcome = computer.flash({computer.hex});  // the .bin beside it
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(computer.read("dfu-util.told") ==
+        "-d\n0483:df11\n-a\n0\n-s\n0x08000000:leave\n-D\n" + computer.bin + "\n");
+  computer.install("dfu-util", 74);
+  const Outcome failed = computer.flash({computer.bin, "--by", "dfu-util"});
+  CHECK(failed.exit == 3);
+  CHECK_THAT(failed.err, Contains("dfu-util ended with 74") && Contains("BOOT0"));
+  const Outcome refused = test::rsc({"flash", "--board", "microbit-v2", "--by", "dfu-util"});
+  CHECK(refused.exit == 2);
+  CHECK_THAT(refused.err, Contains("the microbit-v2 has no DFU boot loader"));
 }
 
 TEST_CASE(
@@ -124,7 +141,7 @@ TEST_CASE("flash says what to do when a tool fails, and when there is no board")
   CHECK_THAT(
       outcome.err,
       Contains(
-          "openocd ended with 1: is the board connected, by the USB socket marked ST-LINK (CN7)?"));
+          "openocd ended with 1: is the board connected by the USB socket marked ST-LINK (CN7)?"));
   CHECK_THAT(computer.flash({computer.hex, "--drive", computer.path("none")}).err,
              Contains("there is no such folder"));
 }
@@ -145,7 +162,7 @@ TEST_CASE("flash takes no firmware of another board, and no board that is none")
   CHECK_FALSE(computer.has("openocd.told"));
   CHECK_THAT(computer.flash({computer.path("none.hex")}).err, Contains("there is no such file"));
   const std::string alone = computer.write("alone.bin", kFirmware);
-  CHECK_THAT(computer.flash({alone}).err, Contains("ends in .elf is needed"));
+  CHECK_THAT(computer.flash({alone}).err, Contains("a .elf file is needed"));
   CHECK_THAT(computer.flash({}).err, Contains("scripts/firmware " + kBoard));
 
   Outcome outcome = test::rsc({"flash"});

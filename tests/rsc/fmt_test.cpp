@@ -45,7 +45,7 @@ TEST_CASE("a program with a mistake stays as it is, and the others are written")
   const std::string wrong = folder.write("wrong.rsl", "WHEN touch LEVEL<\n");
   const Outcome outcome = test::rsc({"fmt", wrong, folder.write("plain.rsl", kPlain)});
   CHECK(outcome.exit == 1);
-  CHECK_THAT(outcome.err, Contains("error[") && Contains("it stays as it is"));
+  CHECK_THAT(outcome.err, Contains("error[") && Contains("it is unchanged"));
   CHECK(folder.read("wrong.rsl") == "WHEN touch LEVEL<\n");
   CHECK(folder.read("plain.rsl") == kStyled);
 }

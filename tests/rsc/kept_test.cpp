@@ -53,7 +53,7 @@ TEST_CASE("KEPT numbers go on in the next run, and other ones begin anew") {
     const Outcome again = robot.run(robot.program, {level});
     CHECK_THAT(again.out, Contains("visit 42 20cm") && Contains("touches becomes 1"));
     CHECK_THAT(again.err,
-               Contains("visits begins with 41, as ") && Contains("nearest begins with 20cm"));
+               Contains("visits starts at 41, from ") && Contains("nearest starts at 20cm"));
     CHECK(robot.kept().at("visits") == "42");
   }
 }
@@ -126,7 +126,7 @@ TEST_CASE("what cannot be read is left as it is") {
           robot.program, fresh ? std::vector<std::string>{"--fresh"} : std::vector<std::string>{});
       CHECK(outcome.exit == 3);
       CHECK(outcome.out.empty());
-      CHECK_THAT(outcome.err, Contains("robot.kept.json: this is no file of kept numbers") &&
+      CHECK_THAT(outcome.err, Contains("robot.kept.json: this is not a file of kept numbers") &&
                                   Contains("nothing was changed"));
       CHECK(robot.read("robot.kept.json") == text);
     }
@@ -148,7 +148,7 @@ TEST_CASE("a number of another kind, one too large, and one that the program doe
   robot.write("robot.kept.json", R"({"kept": {"Visits": "3", "old": "4"}})");
   outcome = robot.run(robot.program);
   CHECK_THAT(outcome.out, Contains("visit 4 35.5cm"));
-  CHECK_THAT(outcome.err, Contains("keeps `old` too, which the program does not; it stays there"));
+  CHECK_THAT(outcome.err, Contains("also keeps `old`, which the program does not; it stays there"));
   CHECK(robot.kept() == json({{"Visits", "4"}, {"old", "4"}, {"nearest", "35.5cm"}}));
 }
 

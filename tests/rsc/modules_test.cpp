@@ -152,15 +152,15 @@ TEST_CASE("rsc module check holds a module against its own declaration") {
   const auto check = [](const std::string& how) { return rsc({"module", "check", hostile(how)}); };
   const Outcome well = check("well");
   CHECK(well.exit == 0);
-  CHECK_THAT(well.out, Contains("keeps its word") && Contains("not tried: what it costs") &&
-                           Contains("it calls itself `hostile`, and its file is `well`"));
+  CHECK_THAT(well.out, Contains("does what it declares") && Contains("not tested: its cost") &&
+                           Contains("it calls itself `hostile`, but its file is `well`"));
   const std::pair<const char*, const char*> wrong[] = {
       {"beyond_state",
        "it touched memory beyond its state, in process() (every 5 ms, with firm 1)"},
       {"crashes_when_firm", "in cost() (every 5 ms, with firm 10)"},
-      {"out_of_range", "MORE is 7, and its range is 0 to 1"},
-      {"untrue_mask", "FIRM has changed, and process() did not say so"},
-      {"reads_its_scratch", "came to something else when it was tried again"},
+      {"out_of_range", "MORE is 7, outside its range of 0 to 1"},
+      {"untrue_mask", "FIRM changed, and process() did not report it"},
+      {"reads_its_scratch", "gave other outputs when it was tried again"},
       {"other_abi", "it is made for another version"}};
   for (const auto& [how, what] : wrong) {
     INFO(how);
@@ -181,7 +181,7 @@ TEST_CASE(
   INFO(good.out << good.err);
   CHECK(good.exit == 0);
   CHECK_THAT(good.out,
-             Contains("it costs no more than it says: ") || Contains("not tried: what it costs"));
+             Contains("it costs no more than it states: ") || Contains("not tested: its cost"));
   CHECK_THAT(good.out, !Contains("calls itself"));
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = source;
@@ -198,14 +198,14 @@ TEST_CASE(
                  .out,
              Contains("it touched memory that is not its own, in process()"));
   CHECK_THAT(changed("return 80;", "return 8O;").err, Contains("does not compile"));
-  if (good.out.find("not tried") != std::string::npos) return;
+  if (good.out.find("not tested") != std::string::npos) return;
   const Outcome floats = changed("level / 64 - self->mean / 64", "(int32_t)((float)level / 64)");
   CHECK(floats.exit == 1);
   CHECK_THAT(floats.out, Contains("FAILED  it computes without floating point"));
   const Outcome lies = changed("return 80;", "return 8;");
   CHECK(lies.exit == 1);
-  CHECK_THAT(lies.out,
-             Contains("FAILED  it costs no more than it says") && Contains("and its cost() is 8"));
+  CHECK_THAT(lies.out, Contains("FAILED  it costs no more than it states") &&
+                           Contains("and its cost() is 8"));
 }
 
 TEST_CASE(

@@ -46,7 +46,7 @@ TEST_CASE("a file that is there stays as it is, and no other is written") {
   folder.write("robot.json", "mine");
   const Outcome refused = test::rsc({"new", folder.path(".")});
   CHECK(refused.exit == 3);
-  CHECK_THAT(refused.err, Contains("robot.json is there already"));
+  CHECK_THAT(refused.err, Contains("robot.json already exists"));
   CHECK(folder.read("robot.json") == "mine");
   CHECK(folder.files() == 1);
 }

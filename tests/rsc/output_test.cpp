@@ -132,10 +132,10 @@ TEST_CASE("two outputs are two files") {
   const RobotFolder robot;
   const std::string file = robot.path("same.jsonl");
   refuses(robot, {"run", robot.program, "--trace", file, "--record", robot.path("./same.jsonl")}, 2,
-          "is named for two outputs");
+          "is given for two outputs");
   CHECK(test::rsc({"run", robot.program, "--trace", "/dev/null", "--record", "/dev/null"}).exit ==
         0);
-  refuses(robot, {"run", robot.program, "--trace", "-"}, 2, "is no output, /dev/stdout is");
+  refuses(robot, {"run", robot.program, "--trace", "-"}, 2, "is not an output, /dev/stdout is");
 }
 
 TEST_CASE("a folder is no output") {

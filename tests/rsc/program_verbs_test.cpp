@@ -92,10 +92,9 @@ TEST_CASE("a scenario or a trace with the name of a configuration is named") {
       const Outcome outcome = test::rsc({verb, quiz});
       CAPTURE(verb, outcome.err);
       CHECK(outcome.exit == 1);
-      CHECK_THAT(outcome.err, Contains("quiz.json " + what +
-                                       ", and was taken for the "
-                                       "configuration of") &&
-                                  Contains("because of its name") && Contains("--config FILE"));
+      CHECK_THAT(outcome.err,
+                 Contains("quiz.json " + what + ", but its name makes it the configuration of") &&
+                     Contains("rename it") && Contains("--config FILE"));
     }
     CHECK(test::rsc({"check", quiz, "--config", robot.path("robot.json")}).exit == 0);
   }
@@ -141,7 +140,7 @@ TEST_CASE("a scenario without a duration goes on to its last reading, and late o
     arguments.insert(arguments.end(), more.begin(), more.end());
     return test::rsc(arguments);
   };
-  const std::string note = "the run ends at 2.000 s: 1 of 2 readings come later and do nothing";
+  const std::string note = "the run ends at 2.000 s: 1 of 2 readings come later and have no effect";
   Outcome outcome = run("", {});
   CAPTURE(outcome.out, outcome.err);
   CHECK_THAT(outcome.out, Contains("60.000 s  left_arm MOVE SLOWLY TO 90deg"));
@@ -361,7 +360,7 @@ TEST_CASE("check --timing says so where no reading commands an actuator in its o
                    "left_arm TO 9deg\nEND\n");
   const std::string out = test::rsc({"check", "--timing", by_variable}).out;
   CHECK_THAT(out, Contains("No reading commands an actuator in its own step.") &&
-                      Contains("the processor, all of it"));
+                      Contains("processor, in total"));
   CHECK(out.find("at most") == std::string::npos);
   const RobotFolder robot;
   CHECK_THAT(test::rsc({"check", "--timing", robot.program}).out,

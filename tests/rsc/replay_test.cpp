@@ -185,7 +185,7 @@ TEST_CASE("a trace is replayed with the program that it was made of") {
       robot.write("stranger.rsl", "EVERY 1s DO MOVE left_arm SLOWLY TO 90deg END\n");
   outcome = robot.replay(robot.read("t.jsonl"), {"--program", stranger});
   CHECK(outcome.exit == 1);
-  CHECK_THAT(outcome.err, Contains("this reading is not of the program"));
+  CHECK_THAT(outcome.err, Contains("this reading does not fit the program"));
 }
 
 TEST_CASE("--program runs in place of the program that was recorded, and the answer says so") {
@@ -194,7 +194,7 @@ TEST_CASE("--program runs in place of the program that was recorded, and the ans
   Outcome outcome = robot.replay(recording, {"--program", robot.program});
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit == 0);
-  CHECK_THAT(outcome.out, Contains("robot.rsl is the program that was recorded"));
+  CHECK_THAT(outcome.out, Contains("robot.rsl is the recorded program"));
 
   const std::string other =
       robot.write("other.rsl",
@@ -204,7 +204,7 @@ TEST_CASE("--program runs in place of the program that was recorded, and the ans
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit == 1);
   CHECK_THAT(outcome.out, Contains("then a difference") &&
-                              Contains("other.rsl ran in place of the program that was recorded"));
+                              Contains("other.rsl ran instead of the recorded program"));
   outcome = robot.replay(recording, {"--program", other, "--format", "json"});
   CHECK(outcome.exit == 1);
   const json program = json::parse(outcome.out).at("programs").at(0);
@@ -282,7 +282,7 @@ TEST_CASE("what is no recording is said") {
   Outcome outcome = robot.replay(R"({"event":"board"})"
                                  "\n");
   CHECK(outcome.exit == 1);
-  CHECK_THAT(outcome.err, Contains("no program begins in it"));
+  CHECK_THAT(outcome.err, Contains("no program starts in it"));
   for (const char* hex : {"0", "0g", "00", "zz", "é"}) {
     outcome = robot.replay(std::string(R"({"event":"image","hex":")") + hex + "\"}\n" +
                            robot.read("t.jsonl"));
@@ -295,7 +295,7 @@ TEST_CASE("what is no recording is said") {
     outcome = robot.replay(robot.with(R"("value":2)", value));
     CAPTURE(value);
     CHECK(outcome.exit == 1);
-    CHECK_THAT(outcome.err, Contains("this reading is not of the program"));
+    CHECK_THAT(outcome.err, Contains("this reading does not fit the program"));
   }
   CHECK(robot.replay(robot.with(R"("sensor":"touch")", R"("sensor":7)")).exit == 1);
 }

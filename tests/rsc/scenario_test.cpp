@@ -96,7 +96,7 @@ TEST_CASE("a wrong scenario gets one message with its line") {
   using Catch::Contains;
   using Catch::StartsWith;
   CHECK_THAT(mistake("{\"stimuli\": [\n{]}"),
-             StartsWith("visit.json:2: this is no JSON, at column 2: "));
+             StartsWith("visit.json:2: this is not JSON, at column 2: "));
   CHECK_THAT(mistake("[]"), StartsWith("visit.json:1: a scenario is an object"));
   CHECK_THAT(
       mistake("{\n\"durration\": \"3s\"}"),
@@ -185,7 +185,7 @@ TEST_CASE("a wrong recording gets one message with its line") {
   CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n1,high\n")
             .starts_with("desk.csv:3: `high` is not a number"));
   CHECK(recording_mistake("time (s);touch.LEVEL\n0,5;3\n")
-            .starts_with("desk.csv:2: `0,5` has a comma: a decimal point is a point"));
+            .starts_with("desk.csv:2: `0,5` has a comma: write the decimal point as a point"));
   CHECK(recording_mistake("time (s),touch.LEVEL\n0,3\n-1,3\n")
             .starts_with("desk.csv:3: `-1s` is negative"));
   CHECK(recording_mistake("time (s),touch.LEVEL (cm)\n0,3\n")
@@ -209,8 +209,8 @@ TEST_CASE("readings out of range, and columns with one name, are notes") {
                       "proximity DISTANCE, 2cm to 400cm: the robot reads 400cm"));
   scenario = read_recording("time (s),touch.LEVEL,touch LEVEL,time (s)\n0,1,2,0\n1,11,1,1\n");
   REQUIRE(scenario.notes.size() == 3);
-  CHECK_THAT(scenario.notes[0], EndsWith("desk.csv:1: note: two columns are called `touch LEVEL`: "
-                                         "of each row the last one counts"));
+  CHECK_THAT(scenario.notes[0], EndsWith("desk.csv:1: note: two columns are called `touch LEVEL`; "
+                                         "the last one counts"));
   CHECK_THAT(scenario.notes[1], Catch::Contains("`time`"));
   CHECK_THAT(scenario.notes[2], Catch::Contains("desk.csv:3: note: 11 is out of"));
 }

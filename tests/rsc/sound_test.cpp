@@ -125,9 +125,9 @@ TEST_CASE("a file that is no sound, is too coarse or is not there is said to be 
              Contains("play.json:2: ") && Contains("room.wav: there is no such file"));
   folder.write("room.wav", "no sound");
   CHECK(play(folder).exit == 1);
-  CHECK_THAT(play(folder).err, Contains("room.wav: it is no sound: "));
+  CHECK_THAT(play(folder).err, Contains("room.wav: it is not a sound file: "));
   folder.write("room.wav", wav(4000, 1, 1, [](double) { return 0; }));
-  CHECK_THAT(play(folder).err, Contains("it has 4000 samples a second; it takes 8000"));
+  CHECK_THAT(play(folder).err, Contains("it has 4000 samples a second; at least 8000 are needed"));
   folder.write("room.wav", wav(8000, 1, 1, [](double) { return 0; }));
   const std::string program = robot(folder);
   folder.write("play.json", R"({"stimuli": [{"sound": "room.wav", "sensor": "voice"}]})");

@@ -170,7 +170,7 @@ class Check(unittest.TestCase):
         program = self.write("robot.rsl", RIGHT.replace("WHEN", "WHEN WHEN"))
         (self.folder / "robot.json").write_text(ROBOT.replace('"sensors"', '"sensosr"'))
         done = self.fix(program)
-        self.assertEqual((done.returncode, done.stdout.split(", ")[0]), (0, "robot.rsl: 2 mended; 0 errors"))
+        self.assertEqual((done.returncode, done.stdout.split(", ")[0]), (0, "robot.rsl: 2 fixed; 0 errors"))
         self.assertEqual((self.folder / "robot.rsl").read_text(), RIGHT)
         self.assertEqual((self.folder / "robot.json").read_text(), ROBOT)
 

@@ -456,6 +456,11 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK_THAT(outcome.out, Contains("W0203 (note): WHEN/ELSE acts at start"));
   CHECK(json::parse(test::rsc({"explain", "E0301", "--format", "json"}).out).at("code") == "E0301");
   CHECK(test::rsc({"explain", robot.write("wrong.rsl", "WHEN touch DO\n")}).exit == 1);
+  outcome = test::rsc({"explain", robot.write("unknown.rsl", "WHEN tuch LEVEL > 3 DO\nEND\n")});
+  CHECK(outcome.exit == 1);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Contains("E0301") && Contains("did you mean `touch`?"));
+  CHECK(test::rsc({"explain", robot.program, "--config", robot.path("none.json")}).exit == 3);
   outcome = test::rsc({"explain", "E0300"});
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));

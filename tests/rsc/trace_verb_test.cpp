@@ -235,7 +235,7 @@ TEST_CASE("rsc trace: what is no trace, and what is no format, is said") {
                                                     "\n{\"t_us\":1000,\"ev");
   outcome = convert(cut, "vcd");
   CHECK(outcome.exit == 0);
-  CHECK_THAT(outcome.err, Contains("cut.jsonl:2: this line was cut"));
+  CHECK_THAT(outcome.err, Contains("cut.jsonl:2: this line is incomplete"));
   // What no trace of ours says does no harm.
   const std::string odd =
       folder.write("odd.jsonl", R"({"event":"win"})"

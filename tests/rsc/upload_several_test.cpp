@@ -58,7 +58,7 @@ TEST_CASE("an upload to several robots at once: each runs the program, and has a
   CHECK_THAT(rows[0], Catch::StartsWith("port ") && Contains("program") && Contains("bytes sent") &&
                           Contains("ms  state"));
   CHECK_THAT(rows[1], Catch::StartsWith(one.port + "  " + hash) &&
-                          Contains("  running; not kept: this board has no store"));
+                          Contains("  running; not kept: this board has no working store"));
   CHECK_THAT(rows[2], Catch::StartsWith(two.port + "  " + hash) && Contains("  running; "));
 }
 

@@ -17,7 +17,7 @@ using test::Running;
 
 namespace {
 
-constexpr const char* kWaits = "waits until a file is saved";
+constexpr const char* kWaits = "waiting until a file is saved";
 
 std::string program_that_logs(const std::string& text) {
   return "AT START DO\n  LOG \"" + text + "\"\nEND\n";

@@ -201,7 +201,7 @@ TEST_CASE("words that are not there, or no words, are one error") {
   says("cannot be used: line 1: it is larger");
   std::filesystem::remove(robot.path("my.words"));
   REQUIRE(mkfifo(robot.path("my.words").c_str(), 0600) == 0);
-  says("is no file");
+  says("is not a file");
 }
 
 TEST_CASE("the file is called like the algorithm, unless robot.json says otherwise") {
@@ -245,14 +245,13 @@ TEST_CASE("what rsc teach was asked wrongly is said before anything begins") {
   fails({"voice", "hello", "one.wav", "--list"}, 2, "one of the three");
   fails({"voice", "hello", "one.wav", "--forget", "stop"}, 2, "one of the three");
   fails({"voice", "hello"}, 2, "give recordings of the word");
-  fails({"voice", "one.wav"}, 2,
-        "`one.wav` stands where the word does: write rsc teach voice WORD one.wav");
+  fails({"voice", "one.wav"}, 2, "`one.wav` is not a word: write rsc teach voice WORD one.wav");
   fails({"voice", "hello", "one.wav", "--microphone", "default"}, 2, "give recordings of the word");
-  fails({"voise", "--list"}, 1, "has no `voise` that is taught words; it has voice");
+  fails({"voise", "--list"}, 1, "has no `voise` that can be taught words; it has voice");
   std::filesystem::remove(robot.path("robosync-own-words"));
-  fails({"voice", "--list"}, 3, "the program of the module own_words is not installed");
+  fails({"voice", "--list"}, 3, "the program for the module own_words is not installed");
   robot.write("robot.json", R"({"algorithms": [{"name": "voice", "module": "command_words"}]})");
-  fails({"voice", "--list"}, 1, "has no algorithm that is taught words");
+  fails({"voice", "--list"}, 1, "has no algorithm that can be taught words");
   robot.write("robot.json", "{");
   fails({"voice", "--list"}, 1, "robot.json:1:");
 }

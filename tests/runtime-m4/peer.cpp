@@ -1,4 +1,4 @@
-// Counts what the runtime has the VM evaluate. The linker's --wrap (CMakeLists.txt) puts this
+// Counts the VM's evaluations for the runtime. The linker's --wrap (CMakeLists.txt) inserts this
 // between them.
 #include "tests/runtime-m4/peer.hpp"
 
@@ -23,7 +23,7 @@ Value real_run(Machine& machine, const Word* code, Progress* progress) asm(
 Value counted_run(Machine& machine, const Word* code, Progress* progress) asm(
     "__wrap__ZN8robosync2vm3runERNS0_7MachineEPKjPNS0_8ProgressE");
 
-// A condition makes no progress.
+// A condition has no Progress.
 Value counted_run(Machine& machine, const Word* code, Progress* progress) {
   if (progress == nullptr) ++test::evaluated;
   return real_run(machine, code, progress);

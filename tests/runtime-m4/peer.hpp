@@ -1,4 +1,4 @@
-// What tests see and change of a Runtime that nobody else can: its peer, a friend.
+// The tests' access to the private parts of a Runtime: its peer, a friend class.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace robosync {
 
 struct RuntimePeer {
   // In the next step all rules of a behaviour are evaluated when one of them is concerned, as in
-  // its first step, and no turn is taken by one rule alone; which must make no difference. SAFETY rules are looked at by the safety thread,
-  // never by a step.
+  // its first step, and no turn takes the fast path for a single rule. This must make no difference. SAFETY rules are
+  // evaluated by the safety thread, never by a step.
   static void concern_all(Runtime& runtime) {
     auto all = ~layers::BehaviorMask{0};
     if (runtime.image().has_safety()) all &= ~(layers::BehaviorMask{1} << vm::kSafetyBehavior);
@@ -20,7 +20,7 @@ struct RuntimePeer {
     processing.takes_whole_turns_ = true;
   }
 
-  // As a behaviour could write it: the workspace is open to its thread.
+  // A behaviour could write it, too: its thread has access to the workspace.
   static layers::Judgement& judgement(Runtime& runtime, unsigned rule) {
     return runtime.shared_.workspace.judgements[rule];
   }
@@ -30,7 +30,7 @@ struct RuntimePeer {
 
 namespace robosync::test {
 
-// Conditions that the VM has evaluated so far, in this program: vm::run is wrapped by the linker.
+// The number of conditions that the VM has evaluated in this process: the linker wraps vm::run.
 std::uint32_t evaluations();
 
 }  // namespace robosync::test

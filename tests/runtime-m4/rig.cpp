@@ -17,7 +17,7 @@ vm::Verdict Rig::activate(const std::vector<std::byte>& bytes) {
   return runtime.activate(bytes);
 }
 
-// With concerns_all in single milliseconds: between two steps there is the end of one, or an event.
+// With concerns_all, runs in single milliseconds: between two steps there is always the end of one, or an event.
 void Rig::run(std::uint64_t until_ms) {
   for (std::uint64_t now = kernel.now() / 1000; concerns_all && now < until_ms; ++now) {
     RuntimePeer::concern_all(runtime);

@@ -1,4 +1,4 @@
-// The runtime itself, on the host's kernel and a board that notes what is done to it: for tests of
+// The runtime itself, on the host's kernel and a board that records what is done to it: for tests of
 // what a Robot (robot.hpp) does not show.
 #pragma once
 
@@ -111,15 +111,15 @@ public:
   std::uint32_t watchdog_ms() const override { return first_time_out_ms; }
 
   std::vector<std::pair<std::uint8_t, policy::PlayerCommand>>
-      said;  // on which line, to sound players
+      said;  // to sound players, with the line
   std::vector<Transfer> transfers;
-  std::deque<std::byte> answers;  // bytes the next reads get; none left: no acknowledge
+  std::deque<std::byte> answers;  // bytes for the next reads; none left: no acknowledge
   bool acknowledges = true;
   std::function<bool(std::span<const std::byte> out, std::span<std::byte> in)>
-      on_transfer;  // answers in the place of `answers`
+      on_transfer;  // answers instead of `answers`
   std::function<bool(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                      std::span<std::byte> in)>
-      on_bus;  // … and in the place of that
+      on_bus;  // … and instead of on_transfer
   bool asks_ahead = false, asked_ahead = false;
   std::function<bool()> busy;
   boards::BusState bus_state;
@@ -128,12 +128,12 @@ public:
   std::function<std::uint32_t(std::uint16_t echo)> echo_us;
   unsigned takes = 0;
   std::function<std::optional<std::uint16_t>(std::uint16_t pin)> voltage_of;
-  std::vector<std::pair<std::uint16_t, bool>> handed;  // let go: true; taken back: false; all
+  std::vector<std::pair<std::uint16_t, bool>> handed;  // true: let_go(), false: take_back(); all
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
-  std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in their order
+  std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in order
   std::vector<std::pair<std::uint16_t, bool>> enables;          // all
   std::map<std::uint16_t, bool> enabled;                        // the last, by pin
-  std::function<void()> on_pin;  // before one is written or read by the runtime
+  std::function<void()> on_pin;  // before the runtime writes or reads a pin
   policy::BoardPins board_pins = boards::kPins;
   std::vector<std::uint32_t> pictures;  // all
   std::vector<std::uint32_t> sounds;    // all
@@ -143,7 +143,7 @@ public:
   bool watching = false;
 };
 
-// A servo on pin 7, and beside it, as actuator 1, what has no pin.
+// A servo on pin 7, and, as actuator 1, one without a pin.
 inline std::array<vm::Actuator, 2> servo_and(vm::DriverId driver, vm::Release safe) {
   std::array<vm::Actuator, 2> wiring{};
   wiring[0].driver = vm::DriverId::servo;
@@ -176,7 +176,7 @@ public:
   sim::Arena arena;
   Runtime runtime;
   std::vector<std::string> lines;
-  std::function<void()> on_event;  // before it is noted
+  std::function<void()> on_event;  // before it is recorded
   bool concerns_all = false;       // in every step (RuntimePeer)
 
 private:

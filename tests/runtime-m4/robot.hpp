@@ -1,5 +1,5 @@
 // A robot for tests: RSL and JSON compiled by the real compiler, run by the real simulator, its
-// trace as lines of text with names in place of numbers.
+// trace as lines of text with names instead of numbers.
 #pragma once
 
 #include <cstddef>
@@ -15,20 +15,20 @@
 
 namespace robosync::test {
 
-// Compiles; fails the test on errors. The memory of a vector is aligned as the VM wants it.
+// Compiles; fails the test on errors. A vector's memory has the alignment that the VM requires.
 std::vector<std::byte> compile(const std::string& rsl, const std::string& json);
 
-// Two fed sensors, near and far, and four virtual actuators a to d, of which b and c are the group
-// bc. Nothing but RSL is needed for most tests.
+// Two fed sensors, near and far, and four virtual actuators a to d; b and c are the group
+// bc. With this, most tests need only RSL.
 extern const char* const kPlainRobot;
 
-// What most tests are about: two behaviours, `high` (b0) before `low` (b1), with the rules given.
+// The program of most tests: two behaviours, `high` (b0) before `low` (b1), with the given rules.
 std::string high_and_low(const std::string& high, const std::string& low);
-// "HEAD DO body END", and with the conditions that say who begins when: far Y > 50, near X > 10.
+// "HEAD DO body END", also with the conditions that start the behaviours: far Y > 50, near X > 10.
 std::string rule(const std::string& head, const std::string& body);
 std::string when_far(const std::string& body);
 std::string when_near(const std::string& body);
-// `body` when the virtual `near X` is above 10; SAFETY stops all of it above 90, until it is below 5.
+// `body` when the virtual `near X` is above 10; SAFETY stops everything above 90, until it is below 5.
 std::string stops_when_far(const std::string& body);
 
 // "1020 #3 command left_arm MOVE SLOWLY to=90": program time in ms, step, event. Values in units.

@@ -1,5 +1,5 @@
-// How ST's B-L475E-IOT01A wires its STM32L475, by UM2153 (boards/stm32l4/wiring.hpp says what each table is). QEMU has the board,
-// without timers and without watchdog.
+// How ST's B-L475E-IOT01A wires its STM32L475, according to UM2153 (boards/stm32l4/wiring.hpp describes the tables). QEMU
+// emulates the board, without timers and watchdog.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@ namespace robosync::boards::stm32l4::wiring {
 
 inline constexpr const char* kName = "b-l475e-iot01a";
 
-// 13 is also the green LED. 5 belongs to the debugger until start(), and the chip pulls it up: so the board's profile lets it
-// have servo pulses only.
+// 13 is also the green LED. 5 belongs to the debugger until start(). The chip pulls it up in that time, so the board's profile
+// allows only servo pulses on it.
 inline constexpr std::array<Output, 9> kOutputs{
     Output{0, kPortA, 1, 2, kTimer5, 1},  Output{2, kPortD, 14, 2, kTimer4, 2},
     Output{3, kPortB, 0, 2, kTimer3, 2},  Output{4, kPortA, 3, 2, kTimer5, 3},
@@ -20,10 +20,10 @@ inline constexpr std::array<Output, 9> kOutputs{
     Output{13, kPortA, 5, 1, kTimer2, 0}};
 inline constexpr Enable kEnable{45, kPortC, 0};  // A5
 
-// What holds the distance sensor of the board (VL53L0X) in its standby while it is low: XSHUT.
+// XSHUT, which holds the board's distance sensor (VL53L0X) in standby while it is low.
 inline constexpr std::array<Pin, 1> kHeldHigh{Pin{kPortC, 6}};
 
-// 9 belongs to the debugger until start(). 32, which is on no header, is the blue button.
+// 9 belongs to the debugger until start(). 32 is the blue button; it is on no header.
 inline constexpr std::array<Input, 5> kInputs{Input{7, kPortA, 4}, Input{8, kPortB, 2},
                                               Input{9, kPortA, 15}, Input{12, kPortA, 6},
                                               Input{32, kPortC, 13}};
@@ -35,7 +35,7 @@ inline constexpr std::array<AnalogInput, 5> kAnalogInputs{
     AnalogInput{40, kPortC, 5, 14}, AnalogInput{41, kPortC, 4, 13}, AnalogInput{42, kPortC, 3, 4},
     AnalogInput{43, kPortC, 2, 3}, AnalogInput{44, kPortC, 1, 2}};
 
-// 0: of the Arduino header, D15 and D14; 1: of what is on the board.
+// 0: the Arduino header's, D15 and D14; 1: the bus of the parts on the board.
 inline constexpr std::array<Bus, 2> kBuses{
     Bus{kI2c1, 8, 9, {6}, {7}},
     Bus{kI2c2, 10, 11, {4}, {5}},

@@ -1,19 +1,19 @@
-// An I2C bus by a master with memory access of its own. The processor says what is wanted, and is told by an interrupt when it is
-// there: nobody waits. So it is asked ahead (boards::Board::i2c_ask()). What is wanted stands in requests, which run one after the
-// other, in the order in which they were asked. A request may begin with a page to be selected, in a transfer of its own (select()):
-// whoever else asks comes before both or after both.
+// An I2C bus whose master has DMA. The processor starts a transfer and an interrupt reports its end, so no thread waits.
+// Transfers are therefore asked ahead (boards::Board::i2c_ask()). They are queued as requests and run one after the other, in
+// the order in which they were asked. A request may begin by selecting a page, in its own transfer (select()); no other request
+// comes between the two.
 //
-// Bounded: who is not acknowledged, or does not get the clock, has failed. A transfer that is not over when its answer is due
-// is given up, and the bus let go. A data line found held down gets clocks, nine at most, before a transfer; while a line stays
-// held down no transfer begins.
+// Time is bounded. A transfer that is not acknowledged, or does not get the clock, has failed. One that is not over when its
+// answer is due is given up, and the bus released. If the data line is held low before a transfer, it gets up to nine clocks;
+// while a line stays low, no transfer begins.
 //
-// Master says how the hardware does it:
-//   start()                  once
-//   begin(address, out, in)  writes `out`, then reads `in`, if anything; both stay where they are meanwhile
-//   on_interrupt()           how that stands
-//   let_go()                 whatever it was about, it lets go of its lines, and is ready for the next one
+// Master implements the hardware's part:
+//   start()                  called once
+//   begin(address, out, in)  writes `out`, then reads `in`, if it is not empty; neither moves during the transfer
+//   on_interrupt()           returns the transfer's state
+//   let_go()                 aborts any transfer, releases the lines and is ready for the next one
 //   clock_is_high(), data_is_high()
-//   take_clock(), give_clock_back()   the master is off in between, and drive_clock(high) works the line
+//   take_clock(), give_clock_back()   the master is off in between, and drive_clock(high) sets the line
 //   half_bit()               waits for some 1.5 us
 #pragma once
 
@@ -37,7 +37,7 @@ public:
   constexpr explicit AskedBus(Master master) : master_(master) {}
 
   void start() { master_.start(); }
-  // Both as boards::Board says, with `ahead` as it was asked last. What is longer than a request can be fails.
+  // As in boards::Board; `ahead` is the last argument of i2c_ask(). A transfer too long for a request fails.
   //  [one thread at a time]
   bool select(std::span<const std::byte> page);
   bool transfer(bool ahead, std::uint8_t address, std::span<const std::byte> out,
@@ -47,15 +47,15 @@ public:
   // [its interrupt]
   void on_interrupt();
 
-  // More than there is time for (policy::kBusWindowUs).
+  // More than fit into the time (policy::kBusWindowUs).
   static constexpr std::size_t kMostRequests = 20;
 
 private:
-  static constexpr std::size_t kMostWritten = 19;  // a portion of a display's picture
+  static constexpr std::size_t kMostWritten = 19;  // part of a display's picture
   static constexpr std::size_t kMostRead = 16;
-  static constexpr unsigned kMostClocks = 9;  // a byte, and its acknowledgement
+  static constexpr unsigned kMostClocks = 9;  // a byte and its acknowledge bit
 
-  // The master reads and writes these, so they stay where they are.
+  // The master's DMA reads and writes these, so they do not move.
   struct Request {
     enum class State : std::uint8_t { none, waits, runs, done, failed };
     State state = State::none;
@@ -86,11 +86,11 @@ private:
 
   Master master_;
   std::array<Request, kMostRequests> requests_{};
-  std::size_t used_ = 0;  // of them, from the first on
+  std::size_t used_ = 0;  // requests, from the first on
   Request* running_ = nullptr;
-  bool selecting_ = false;  // … its page
+  bool selecting_ = false;  // running_ is selecting its page
   std::array<std::byte, kMostSelected> page_{};
-  std::uint8_t selected_ = 0;  // bytes of it, for the next transfer
+  std::uint8_t selected_ = 0;  // bytes of page_, for the next transfer
   std::uint32_t turn_ = 0;
   std::uint16_t clears_ = 0;
   bool held_ = false;
@@ -104,7 +104,7 @@ bool AskedBus<Master>::select(std::span<const std::byte> page) {
   return true;
 }
 
-// What is written without being asked for ahead goes out as well, each time.
+// A write that was not asked ahead is sent, too, each time.
 template <typename Master>
 bool AskedBus<Master>::transfer(bool ahead, std::uint8_t address, std::span<const std::byte> out,
                                 std::span<std::byte> in) {
@@ -134,7 +134,7 @@ typename AskedBus<Master>::Request* AskedBus<Master>::find(std::uint8_t address,
   return nullptr;
 }
 
-// What nobody has asked about for the longest time gives way.
+// The request that has not been asked for the longest time gives up its place.
 template <typename Master>
 typename AskedBus<Master>::Request* AskedBus<Master>::place() {
   Request* oldest = nullptr;
@@ -146,7 +146,7 @@ typename AskedBus<Master>::Request* AskedBus<Master>::place() {
   return used_ < requests_.size() ? &requests_[used_++] : oldest;
 }
 
-// Two that want the same get it together.
+// Two callers that want the same transfer share one request.
 template <typename Master>
 bool AskedBus<Master>::ask(Request* request, bool ahead, std::uint8_t address,
                            std::span<const std::byte> out, std::size_t read) {
@@ -167,8 +167,8 @@ bool AskedBus<Master>::ask(Request* request, bool ahead, std::uint8_t address,
   return nothing_to_read;
 }
 
-// What was read may be asked for again until it is asked ahead anew; what was written is over. Nobody waits for the end of
-// what is only written; where something is to be read and is late, the one that runs is in the way, be it another.
+// A read's result can be collected again until the read is asked ahead anew; a write's result only once. Nobody waits for the
+// end of a write. If a read is late, the running transfer is given up, even if it belongs to another request.
 template <typename Master>
 bool AskedBus<Master>::collect(Request& request, std::span<std::byte> in) {
   const bool done = request.state == State::done;
@@ -211,11 +211,11 @@ void AskedBus<Master>::begin(Request& request) {
   send(request);
 }
 
-// Its page, or what comes behind it. Without a frame of its own: a sensor's thread has no stack to spare for one.
+// Sends the page, or the bytes after it. Inlined, because a sensor's thread has no stack to spare for another frame.
 template <typename Master>
 [[gnu::always_inline]] inline void AskedBus<Master>::send(Request& request) {
   const std::byte* const out = selecting_ ? request.page.data() : request.out.data();
-  asm volatile("" ::: "memory");  // the master reads it from there
+  asm volatile("" ::: "memory");  // the master reads it from memory
   master_.begin(request.address, std::span(out, selecting_ ? request.selected : request.written),
                 std::span(request.in).first(selecting_ ? 0U : request.read));
 }
@@ -225,13 +225,13 @@ void AskedBus<Master>::on_interrupt() {
   const port::Alone alone;
   const Transfer state = master_.on_interrupt();
   if (state == Transfer::goes_on || running_ == nullptr) return;
-  asm volatile("" ::: "memory");  // it has written there
+  asm volatile("" ::: "memory");  // the master has written to memory
   if (std::exchange(selecting_, false) && state == Transfer::done) return send(*running_);
   end(state == Transfer::done ? State::done : State::failed);
 }
 
-// Those that wait are not the ones to blame. Of what is only written nobody asks how it went, so it takes no place from a result
-// that waits to be taken.
+// Waiting requests do not fail with this one. Nobody collects the result of a plain write, so its place becomes free for
+// others.
 template <typename Master>
 void AskedBus<Master>::end(State how) {
   const bool is_asked_for = running_->read != 0 || running_->ahead;
@@ -240,7 +240,7 @@ void AskedBus<Master>::end(State how) {
   go_on();
 }
 
-// A device that was interrupted in the midst of a byte lets go of the data line when the byte is over.
+// A device that was interrupted in the middle of a byte releases the data line at the end of the byte.
 template <typename Master>
 bool AskedBus<Master>::free_lines() {
   if (!master_.clock_is_high()) return false;
@@ -263,7 +263,7 @@ void AskedBus<Master>::clock_out() {
   }
 }
 
-// Of all buses of a board, the first one 0.
+// For all buses of a board; the first one has number 0.
 template <typename Buses>
 bool is_any_busy(const Buses& buses) {
   return std::ranges::any_of(buses, [](const auto& bus) { return bus.is_busy(); });

@@ -1,5 +1,5 @@
-// Nothing of this is in the firmware: it is there so that no firmware can be built for a board that
-// does not declare its costs.
+// This adds nothing to the firmware: it makes the build fail for a board that does not declare its
+// costs.
 #include "runtime-m4/boards/costs.hpp"
 
 static_assert(robosync::boards::kCosts.instructions_per_ms() > 0);

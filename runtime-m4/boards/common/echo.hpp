@@ -1,7 +1,7 @@
-// How long a pin is high after it was asked to be: what a board makes of the edges of an echo pin, of which it tells as
-// interrupts come, with the level that it sees then.
+// Measures how long an echo pin is high after a ping. The board reports each edge from its interrupt, with the level that it
+// sees then.
 //
-// Whatever comes, a measurement is over with the second edge: who looks after the pin lets it interrupt no more then.
+// A measurement ends with the second edge at the latest: the board then disables the pin's interrupt.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace robosync::boards {
 
 class Echo {
 public:
-  // A pin that is high already says nothing: false, and its edges are not looked at.
+  // False if the pin is already high: nothing can be measured, and the board ignores its edges.
   bool begin(bool high) {
     state_ = State::asked;
     return !high;
   }
-  // An edge, or several, after which the pin has this level, at `now` of a counter that counts up. True: it is over.
+  // One edge or several, after which the pin has this level; `now` is a counter that counts up. True: the measurement is over.
   bool edge(bool high, std::uint32_t now) {
     if (state_ == State::asked && high) {
       state_ = State::rose;
@@ -27,7 +27,7 @@ public:
     if (fell) counts_ = now - counts_;
     return true;
   }
-  // Of the counter; 0: it was not measured. Edges are looked at no more then.
+  // The time in counts; 0: not measured. Call it only when edges are no longer reported.
   [[nodiscard]] std::uint32_t take() const { return state_ == State::fell ? counts_ : 0; }
 
 private:

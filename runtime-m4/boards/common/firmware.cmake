@@ -1,17 +1,17 @@
-# The firmware for the board that the preset names (ROBOSYNC_BOARD), and for its twins: boards/NAME/board.cmake says what is special to
-# each.
+# The firmware for the board that the preset names (ROBOSYNC_BOARD), and for its twins. boards/NAME/board.cmake sets what differs
+# between boards:
 #
-#   board_folder    where in boards/ its sources, its linker script and interrupts.hpp stand: a chip's, or NAME, if it is not told
-#   board_sources   the board's own sources there; where one asks how the chip is wired, boards/NAME/wiring.hpp says it
+#   board_folder    folder in boards/ with its sources, linker script and interrupts.hpp: a chip's; default: NAME
+#   board_sources   the board's own sources there; if they depend on the chip's wiring, boards/NAME/wiring.hpp describes it
 #   board_script    its linker script, which includes firmware.ld
-#   board_machine   what QEMU calls the board (build/…/machine, for scripts and tests)
-#   board_line      the serial line of that machine which is the link's, 0 if it is not told (build/…/line)
-#   board_clock     when no load reads a free-running counter of 32 bits: ROBOSYNC_CLOCK_IS_SYSTICK where there is none,
+#   board_machine   QEMU's name of the board (build/…/machine, for scripts and tests)
+#   board_line      the serial line of that machine that is the link's; default: 0 (build/…/line)
+#   board_clock     if no load can read a free-running 32-bit counter: ROBOSYNC_CLOCK_IS_SYSTICK if there is none,
 #                   or ROBOSYNC_CLOCK_IS_CALLED (port/cortex-m4/clock.hpp)
 set(board_common ${CMAKE_CURRENT_LIST_DIR})
 
-# What the sources of the board are compiled with, and who links them; shared by the firmware and by the tests and benches on
-# the board.
+# Options for compiling the board's sources and for linking with them. The firmware, the board's tests and its benches share
+# them.
 function(robosync_wire_board target)
   set(script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${board_folder}/${board_script})
   target_compile_definitions(${target} PUBLIC ${board_definitions} PRIVATE
@@ -23,8 +23,8 @@ function(robosync_wire_board target)
   set_property(TARGET ${target} PROPERTY INTERFACE_LINK_DEPENDS ${script} ${board_common}/firmware.ld)
 endfunction()
 
-# robosync_board(TARGET FOLDER): the objects of the board that profile.cmake and board.cmake have told of. What scripts and tests
-# ask of the machine is in FOLDER, as the firmware.
+# robosync_board(TARGET FOLDER): the objects of the board that profile.cmake and board.cmake describe. FOLDER gets the firmware
+# and the files about the machine that scripts and tests read.
 function(robosync_board target folder)
   if(NOT board_folder)
     set(board_folder ${ROBOSYNC_BOARD})
@@ -44,8 +44,8 @@ function(robosync_board target folder)
   robosync_wire_board(${target}_asserted)
 endfunction()
 
-# Linked as C, without the C++ library, and without a heap: newlib's malloc would need _sbrk, which
-# nobody defines, so code that allocates does not link.
+# Linked as C, without the C++ library, and without a heap: newlib's malloc needs _sbrk, which is not
+# defined, so code that allocates does not link.
 function(robosync_link target folder name board runtime)
   add_executable(${target} ${ARGN})
   target_link_libraries(${target} PRIVATE ${board} ${runtime})
@@ -56,8 +56,8 @@ function(robosync_link target folder name board runtime)
     LINKER_LANGUAGE C OUTPUT_NAME ${name} SUFFIX .elf RUNTIME_OUTPUT_DIRECTORY ${folder})
 endfunction()
 
-# robosync_elf(TARGET NAME SOURCES…): an ELF for the board, build/…/NAME.elf. When the name of TARGET ends in that of a
-# variant, with the libraries of that one.
+# robosync_elf(TARGET NAME SOURCES…): an ELF for the board, build/…/NAME.elf. If TARGET ends in the name of a variant, it is
+# linked with that variant's libraries.
 function(robosync_elf target name)
   string(REGEX MATCH "_(asserted)$" variant ${target})
   robosync_link(${target} ${PROJECT_BINARY_DIR} ${name} robosync_board${variant} robosync_runtime${variant} ${ARGN})
@@ -66,8 +66,8 @@ endfunction()
 robosync_board(robosync_board ${PROJECT_BINARY_DIR})
 robosync_elf(robosync_firmware robosync boards/common/main.cpp)
 
-# Another board whose runtime is compiled to the same objects, so that they need not be compiled twice: the profiles
-# have the same runtime_definitions, and board.cmake the same clock. Its firmware is build/…/BOARD/robosync.elf.
+# Another board that shares the runtime's objects, so that they need not be compiled twice: both profiles give the same
+# runtime_definitions, and both board.cmake the same clock. Its firmware is build/…/BOARD/robosync.elf.
 function(robosync_twin ROBOSYNC_BOARD)
   unset(board_folder)
   unset(board_line)

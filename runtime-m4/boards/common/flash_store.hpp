@@ -1,14 +1,14 @@
-// A piece of the chip's own flash as the board's store. Nothing is remembered of it but which page has just been erased:
-// what stands there is compared with what shall, so a write that was cut off goes on, or is found to be impossible.
+// Part of the chip's flash as the board's store. It remembers only which page has just been erased. A write compares the
+// flash's contents with the wanted data, so an interrupted write can be continued, or turns out to be impossible.
 //
-// Chip says how its flash is worked:
+// Chip implements the flash access:
 //   kPage              bytes that are erased together
 //   kUnit              words that are written together
-//   kStalls            who runs code waits while a page is erased
-//   erase(page, call)  the next part of erasing the page at that address; calls are counted from 0. No part keeps
-//                      others waiting for longer than Store::kStall
-//   program(at, words) kUnit of them, of a page that was erased
-//   is_busy()          still with an erasing, maybe one that was given up: who reads would stand still. When that takes no end, the
+//   kStalls            an erase stalls code execution
+//   erase(page, call)  does the next part of erasing the page at that address; `call` counts from 0. No part stalls
+//                      others for longer than Store::kStall
+//   program(at, words) writes kUnit words to an erased page
+//   is_busy()          an erase is still running, maybe one that was given up: a read would stall. If that never ends, the
 //                      store does not answer
 #pragma once
 
@@ -29,7 +29,7 @@ enum class Erasing : std::uint8_t { goes_on, done, failed };
 template <typename Chip>
 class FlashStore final : public Store {
 public:
-  // `begin` is its address, where a page begins.
+  // `begin` is the store's address, at the start of a page.
   constexpr FlashStore(std::uint32_t begin, std::uint32_t bytes) : begin_(begin), bytes_(bytes) {}
 
   std::uint32_t size() const override { return bytes_; }
@@ -44,7 +44,7 @@ public:
     return Outcome::done;
   }
 
-  // What is not given stays erased.
+  // The rest of a short piece stays erased.
   Outcome write(std::uint32_t at, std::span<const std::byte> bytes) override {
     if (at % Chip::kPage == 0 && erased_ != at) return erase(at);
     if (Chip::is_busy()) return wait();
@@ -55,7 +55,7 @@ public:
     for (std::size_t i = 0; i < wanted.size(); i += Chip::kUnit)
       if (!std::ranges::equal(unit(wanted, i), unit(words_at(at), i)))
         Chip::program(begin_ + at + static_cast<std::uint32_t>(i * kWord), unit(wanted, i));
-    erased_ = kNone;  // who writes there again erases it again
+    erased_ = kNone;  // the next write to the page's beginning erases it again
     return words_at(at) == wanted ? Outcome::done : Outcome::spent;
   }
 
@@ -96,8 +96,8 @@ private:
   std::uint32_t begin_, bytes_;
   std::uint32_t erasing_ = kNone;
   unsigned calls_ = 0;
-  unsigned waited_ = 0;           // for the end of one that was given up
-  std::uint32_t erased_ = kNone;  // this page, completely, and nothing has been written there since
+  unsigned waited_ = 0;           // for the end of an erase that was given up
+  std::uint32_t erased_ = kNone;  // this page is erased, and nothing has been written to it since
 };
 
 }  // namespace robosync::boards

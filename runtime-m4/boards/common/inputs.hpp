@@ -1,4 +1,4 @@
-// Where a pin stands in a board's table of inputs.
+// The index of a pin in a board's table of inputs.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace robosync::boards {
 
-// inputs.size(): it is none of them.
+// inputs.size() if the pin is not in the table.
 template <typename Inputs>
 constexpr std::size_t find_input(const Inputs& inputs, std::uint16_t pin) {
   std::size_t i = 0;

@@ -10,7 +10,7 @@
 
 robosync::kernel::Kernel robosync_kernel;
 
-extern "C" std::byte robosync_arena[];  // where the linker script says
+extern "C" std::byte robosync_arena[];  // placed by the linker script
 
 namespace {
 
@@ -36,8 +36,8 @@ void fatal_fault(const link::Fault& fault) {
 
 }  // namespace robosync::port::hooks
 
-// A kernel that has no place for its first two threads is not built right: main() then returns, and
-// the board starts over.
+// A kernel without room for its first two threads is built wrong: main() then returns, and
+// the board resets.
 int main() {
   const robosync::link::Fault* const last_words = robosync::boards::last_fault();
   if (last_words != nullptr) server.report(*last_words);

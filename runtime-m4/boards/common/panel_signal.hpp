@@ -1,12 +1,12 @@
-// What a panel of WS2812 lights hears, as bits of an SPI master that fetches them from memory while the processor does something
-// else: several of its bits are one of the panel's, high for a part of them. 24 bits a light, green first, the highest one first;
-// silence of 280 us at least is the end of a picture (Worldsemi, WS2812B, "Data transfer time", "Composition of 24bit data").
+// The signal for a panel of WS2812 lights, sent in the background by an SPI master with DMA. Several SPI bits form one bit of the
+// panel, which is high for part of them. A light takes 24 bits: green first, most significant bit first. Silence of at least
+// 280 us ends a picture (Worldsemi, WS2812B, "Data transfer time", "Composition of 24bit data").
 //
-// Hardware says how: kHz of the SPI, kBitsOfBit of its bits for one of the panel's, kZero and kOne that they are, send(pin, bytes),
-// which gives up what it sends, and let_go().
+// Hardware provides the SPI's rate kHz; kBitsOfBit, the number of SPI bits in one bit of the panel; kZero and kOne, their values;
+// send(pin, bytes), which drops what is still being sent; and let_go().
 //
-// Silence is sent, too, before a picture and behind it: a picture that was given up in its midst is over then, and no manual
-// says what the line is when the SPI has nothing to send.
+// The silence is sent as bytes, before and after each picture. It ends a picture that was dropped midway; and no manual says
+// which level the line has when the SPI has nothing to send.
 #pragma once
 
 #include <array>
@@ -33,14 +33,14 @@ public:
       put(place, kDark);
   }
 
-  // What is written while it goes out may be seen for a moment: nothing is, as all of it is sent again.
+  // Changes the buffer even while it is being sent. No mixed picture stays visible, because the whole picture is sent again.
   void show(std::uint32_t picture) override {
     for (std::uint32_t left = (picture ^ shown_) & kAllLights; left != 0; left &= left - 1) {
       const auto light = static_cast<unsigned>(std::countr_zero(left));
       put(panel_.place_of(light), (picture >> light & 1) != 0 ? lit_ : kDark);
     }
     shown_ = picture;
-    std::atomic_signal_fence(std::memory_order_release);  // the SPI reads what stands in memory
+    std::atomic_signal_fence(std::memory_order_release);  // the SPI reads from memory
     const std::size_t count = 2 * kSilence + panel_.lights() * kLightBytes;
     Hardware::send(panel_.pin, std::span<const std::byte>(bytes_).first(count));
   }
@@ -78,7 +78,7 @@ private:
   policy::Panel panel_{};
   Light lit_{};
   std::uint32_t shown_ = 0;
-  // By itself, so that it takes no flash: there is one of each Hardware.
+  // Static, so that it takes no flash: there is one panel for each Hardware.
   inline static std::array<std::byte, 2 * kSilence + policy::kMostPanelLights * kLightBytes>
       bytes_{};
 };

@@ -1,7 +1,7 @@
-// The serial line to a sound player, over a UART that holds a byte: interrupts send a command, and nothing is received.
+// The serial line to a sound player, over a UART that holds one byte: interrupts send a command, and nothing is received.
 //
-// Hardware says how the UART does it: start(), can_send(), send(byte), begin_to_send() and nothing_to_send(), as
-// boards/common/serial_line.hpp has them.
+// Hardware implements the UART access: start(), can_send(), send(byte), begin_to_send() and nothing_to_send(), as in
+// boards/common/serial_line.hpp.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ class PlayerLine {
 public:
   static void start() { Hardware::start(); }
 
-  // boards::Board::say(). While its interrupt is held off.
+  // See boards::Board::say(). Call it with the UART's interrupt masked.
   void say(const policy::PlayerCommand& command) {
     command_ = command;
     sent_ = 0;
@@ -31,7 +31,7 @@ public:
 
 private:
   policy::PlayerCommand command_{};
-  std::size_t sent_ = command_.size();  // of its bytes
+  std::size_t sent_ = command_.size();  // bytes of command_
 };
 
 }  // namespace robosync::boards

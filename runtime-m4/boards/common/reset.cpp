@@ -8,7 +8,7 @@ namespace robosync::boards {
 
 namespace {
 
-// Survives a reset. Only believed when `magic` is right, which is taken away once it was read.
+// Survives a reset. Valid only if `magic` is right; it is cleared once it has been read.
 struct Record {
   std::uint32_t magic;
   ResetReason reason;

@@ -1,5 +1,5 @@
-// Why the firmware started, and with which last words: kept in memory that survives a reset, read
-// when the firmware starts, and forgotten then.
+// Why the firmware started, and its last words: kept in memory that survives a reset. They are read and
+// cleared when the firmware starts.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ ResetReason last_reset();
 // The fault that made the firmware reset itself before this start, or null.
 const link::Fault* last_fault();
 
-// The watchdog is about to reset the board. Legal in an NMI.
+// Records that the watchdog is about to reset the board. Legal in an NMI.
 void keep_watchdog_reset();
 // Switches the outputs off, keeps `fault` for the next start and resets.
 [[noreturn]] void reset_after(const link::Fault& fault);

@@ -1,5 +1,5 @@
-// A byte ring between one writer and one reader, of which either may be an interrupt handler.
-// Without locks: each side moves its own index only, and only after the bytes are in place.
+// A byte ring between one writer and one reader; either may be an interrupt handler.
+// It needs no locks: each side moves only its own index, and only after it has copied the bytes.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ public:
 
 private:
   std::array<std::byte, kSize> bytes_{};
-  std::atomic<std::uint32_t> begin_ = 0;  // both count bytes and wrap with 2^32
+  std::atomic<std::uint32_t> begin_ = 0;  // both count bytes and wrap at 2^32
   std::atomic<std::uint32_t> end_ = 0;
 };
 

@@ -1,9 +1,9 @@
-// The link's serial line over a UART that holds a byte each way. Interrupts move bytes between the line and two rings, and
-// tell who reads and writes when there is something to do.
+// The link's serial line over a UART that holds one byte each way. Interrupts move bytes between the line and two rings, and
+// tell the reader and the writer when there is something to do.
 //
-// Hardware says how the UART does it: start(), which lets its interrupts come once the kernel runs; can_send(),
-// send(byte), has_received(), receive(); begin_to_send(): on_transmit() shall be called, though nothing has left;
-// and nothing_to_send(): nor shall it be until then.
+// Hardware implements the UART access: start(), which enables its interrupts for when the kernel runs; can_send(),
+// send(byte), has_received(), receive(); begin_to_send(), after which on_transmit() is called, even if no byte has left;
+// and nothing_to_send(), after which it is not called until the next begin_to_send().
 #pragma once
 
 #include <array>
@@ -29,10 +29,10 @@ public:
     Hardware::start();
   }
 
-  // Both return at once with the number of bytes moved. [one thread each]
+  // Both return immediately with the number of bytes moved. [one thread each]
   //
-  // The handler sends while there is room and goes on by itself with each byte that has left. It is called in any case,
-  // and behind wants_room_: so it sees that, even when the last byte has just left.
+  // The handler fills the UART and continues on its own with each byte that has left. begin_to_send() calls it after
+  // wants_room_ is set, so it sees the flag even if the last byte has just left.
   std::size_t write(std::span<const std::byte> bytes) {
     const std::size_t count = to_send_.write(bytes);
     if (count < bytes.size()) wants_room_.store(true);
@@ -41,7 +41,7 @@ public:
   }
   std::size_t read(std::span<std::byte> bytes) { return received_.read(bytes); }
 
-  // Bytes that find the ring full are lost; the link's frames are checked and asked for again. A stop is not. [interrupt]
+  // Bytes that find the ring full are lost; the link checks its frames and repeats them. A stop is never lost. [interrupt]
   void on_receive() {
     std::array<std::byte, 1> next{};
     for (unsigned i = 0; i < kBurst && Hardware::has_received(); ++i) {
@@ -69,12 +69,12 @@ public:
 
 private:
   static constexpr std::size_t kSendBuffer = 256;
-  // Bytes one interrupt moves at most, so that it never keeps others waiting for long.
+  // Most bytes that one interrupt moves, so that it never delays others for long.
   static constexpr unsigned kBurst = 16;
 
   Ring<kReceiveBuffer> received_;
   Ring<kSendBuffer> to_send_;
-  std::atomic<bool> wants_room_ = false;  // who writes waits until half of the ring is free
+  std::atomic<bool> wants_room_ = false;  // the writer waits until half of the ring is free
   link::StopDetector stops_;
   LineEvents events_;
 };

@@ -1,4 +1,4 @@
-// From reset to main(): FPU, memory, constructors. Nothing here may use the FPU before it is on, or
+// From reset to main(): FPU, memory, constructors. No code here may use the FPU before it is on, or
 // .data and .bss before they are set up.
 #include <cstdint>
 
@@ -20,7 +20,7 @@ void __cxa_pure_virtual() {
   asm volatile("udf #0");
 }
 
-// An interrupt that nobody enabled: memory or hardware is not what it should be.
+// An interrupt that nobody enabled: memory or hardware is faulty.
 void Unexpected_Handler() {
   robosync::link::Fault fault{};
   asm volatile("mrs %0, ipsr" : "=r"(fault.xpsr));

@@ -1,5 +1,5 @@
-// The two vector tables. The second one is used while a thread without privileges runs: such a thread may call, and
-// is left in another way (port/cortex-m4/switch.S).
+// The two vector tables. The second one is active while an unprivileged thread runs: such a thread may make supervisor calls,
+// and switching away from it takes another path (port/cortex-m4/switch.S).
 #include "runtime-m4/boards/common/vectors.hpp"
 
 #include ROBOSYNC_BOARD_INTERRUPTS

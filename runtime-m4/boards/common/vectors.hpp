@@ -1,8 +1,8 @@
 // The vector tables of a board with a Cortex-M4: the core's own exceptions, which are the same
-// everywhere, and behind them the interrupts that the board says it uses.
+// everywhere, followed by the interrupts that the board uses.
 //
-// A board says in its interrupts.hpp how many it has (kInterrupts) and which are used (kUsedInterrupts); vectors.cpp
-// makes the tables.
+// A board's interrupts.hpp declares how many interrupts there are (kInterrupts) and which are used (kUsedInterrupts);
+// vectors.cpp makes the tables.
 #pragma once
 
 #include <array>
@@ -40,15 +40,15 @@ struct Interrupt {
   void (*handler)();
 };
 
-inline constexpr std::size_t kExceptions = 16;  // and the stack, which stands first
+inline constexpr std::size_t kExceptions = 16;  // including the initial stack pointer
 template <std::size_t kInterrupts>
 using Vectors = std::array<Vector, kExceptions + kInterrupts>;
 
-// What VTOR demands: the next power of two.
+// VTOR requires the table's size, rounded up to a power of two.
 template <std::size_t kInterrupts>
 inline constexpr std::size_t kVectorAlignment = std::bit_ceil(sizeof(Vectors<kInterrupts>));
 
-// `kInterrupts` is how many the processor has, `used` those that have a handler.
+// `kInterrupts` is the number of interrupts that the processor has; `used` are those with a handler.
 template <std::size_t kInterrupts>
 constexpr Vectors<kInterrupts> vectors(std::span<const Interrupt> used, bool privileged) {
   const auto handler = [](void (*function)()) { return Vector{.handler = function}; };

@@ -1,4 +1,4 @@
-// What the port asks of TIMER0: the clock, which it wants to count down, and what ends the core's sleep.
+// The port's use of TIMER0: the clock, which it expects to count down, and the alarm that ends the core's sleep.
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
 #include "runtime-m4/port/cortex-m4/clock.hpp"

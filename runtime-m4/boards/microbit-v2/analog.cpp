@@ -1,7 +1,6 @@
 // See analog.hpp. Nordic's nRF52833 Product Specification, SAADC.
 //
-// A voltage takes 12 us: shorter than two switches between threads take, so it is waited for. The interrupts of others come
-// meanwhile.
+// A conversion takes 12 us: less than two thread switches take, so the thread polls. Interrupts are still taken.
 #include "runtime-m4/boards/microbit-v2/analog.hpp"
 
 #include <algorithm>
@@ -21,12 +20,12 @@ struct Input {
 };
 constexpr std::array kInputs{Input{0, 1}, Input{1, 2}, Input{2, 3}};
 
-// A look takes a cycle of the peripherals' 16 MHz at least: 31 us, and 6 more until it has stopped.
+// One poll takes at least a cycle of the peripherals' 16 MHz: 31 us in all, and 6 more until the converter has stopped.
 constexpr unsigned kLooks = 500;
 constexpr unsigned kLooksAtStop = 100;
 constexpr unsigned kLooksAtCalibration = 10'000;
 
-alignas(4) volatile std::int16_t result;  // a little below 0 is 0
+alignas(4) volatile std::int16_t result;  // slightly negative values count as 0
 
 bool happens(Register event, unsigned& looks) {
   for (; looks > 0; --looks)
@@ -34,7 +33,7 @@ bool happens(Register event, unsigned& looks) {
   return false;
 }
 
-// Who starts it again earlier gets what nobody knows.
+// Waits until it has stopped: after an earlier start, results are undefined.
 void stop() {
   unsigned looks = kLooksAtStop;
   forget(saadc::kStopped);
@@ -44,7 +43,7 @@ void stop() {
 
 }  // namespace
 
-// One that cannot be calibrated does not answer later, either.
+// If the calibration does not end, read() does not get an answer later, either.
 void start() {
   saadc::kInput.write(saadc::kNoInput);
   saadc::kConfiguration.write(saadc::kPartOfSupply);
@@ -59,7 +58,7 @@ void start() {
   stop();
 }
 
-// Stopped it needs no current, and no pin stays connected.
+// Stops the converter and disconnects the pin at the end, which saves current.
 bool read(std::uint16_t pin, std::uint16_t& voltage) {
   const std::size_t i = find_input(kInputs, pin);
   if (i == kInputs.size()) return false;

@@ -1,16 +1,16 @@
-// The voltages of the rings 0, 1 and 2, by the chip's converter, SAADC.
+// The voltages of rings 0, 1 and 2, measured by the chip's converter, SAADC.
 //
-// They are outputs, too (pins.hpp): a ring that is measured must have been let go.
+// The rings are outputs, too (pins.hpp): let_go() must release a ring before it is measured.
 #pragma once
 
 #include <cstdint>
 
 namespace robosync::boards::microbit::analog {
 
-// The crystal runs.
+// The crystal must be running.
 void start();
-// Of 4095 (boards::kAnalogFull), which is the supply. False when the converter does not answer within some 40 us, or of another
-// pin. [one thread at a time]
+// 4095 (boards::kAnalogFull) is the supply voltage. False when the converter does not answer within some 40 us, or for any
+// other pin. [one thread at a time]
 [[nodiscard]] bool read(std::uint16_t pin, std::uint16_t& voltage);
 
 }  // namespace robosync::boards::microbit::analog

@@ -1,4 +1,4 @@
-# Sources, linker script and clock of the board, and how QEMU calls it (boards/common/firmware.cmake).
+# The board's sources, linker script and clock, and QEMU's name for it (boards/common/firmware.cmake).
 set(board_sources board.cpp alarm.cpp analog.cpp clock.cpp echoes.cpp flash.cpp i2c.cpp inputs.cpp lights.cpp panel.cpp pins.cpp player.cpp resets.cpp speaker.cpp)
 set(board_script microbit_v2.ld)
 set(board_machine microbit)

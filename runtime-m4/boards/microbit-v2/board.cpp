@@ -21,7 +21,7 @@ Board board;
 
 }  // namespace
 
-// The pins first: they are low as soon as can be.
+// The pins come first, so that they are low as soon as possible.
 Board::Board() : chip_reset_(take_reset_cause()) {
   pins::start();
   inputs::start();
@@ -41,8 +41,8 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   analog::start();
 }
 
-// A reset by the watchdog comes without warning, and one after two faults inside of each other too: nobody could note them
-// in memory.
+// A watchdog reset comes without warning, and so does one after a nested fault (lockup): neither could be recorded in
+// memory.
 link::ResetReason Board::reset_reason() const {
   switch (chip_reset_) {
     case ChipReset::watchdog:
@@ -60,7 +60,7 @@ bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const
   return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
 }
 
-// Of whom it is for, the transfer tells.
+// The address comes with the transfer.
 bool Board::i2c_select(std::uint8_t bus, std::uint8_t /*address*/,
                        std::span<const std::byte> page) {
   return bus < i2c_.size() && i2c_[bus].select(page);
@@ -145,7 +145,7 @@ void OwnBus_Handler();
 void Pwm_Handler();
 void Echo_Handler();
 
-// The chip has nothing that causes one.
+// Nothing in the chip causes one.
 void NMI_Handler() {
   robosync::boards::reset_after({});
 }

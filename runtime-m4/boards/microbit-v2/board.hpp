@@ -1,5 +1,5 @@
-// The micro:bit V2: an nRF52833 (Cortex-M4F, 64 MHz, 512 KB of flash, 128 KB of RAM). QEMU has its ancestor, the micro:bit
-// with an nRF51: scripts/emulator makes one with a Cortex-M4 of it.
+// The micro:bit V2: an nRF52833 (Cortex-M4F, 64 MHz, 512 KB of flash, 128 KB of RAM). QEMU has its predecessor, the micro:bit
+// with an nRF51; scripts/emulator turns that into one with a Cortex-M4.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct Uart0 : Uart {  // for SerialLine
 using Line = SerialLine<Uart0>;
 
 struct OwnFlash : Flash {  // for FlashStore
-  // The line's handler takes what came meanwhile.
+  // The line's handler takes the bytes that came in the meantime.
   static Erasing erase(std::uint32_t page, unsigned call) {
     const Erasing state = Flash::erase(page, call);
     if (Uart::holds()) port::core::pend_interrupt(uart::kInterrupt);
@@ -47,7 +47,7 @@ class Board final : public boards::Board {
 public:
   static constexpr std::uint32_t kWatchdogMs = 100;
 
-  // Starts the clock of the core and that of the kernel.
+  // Starts the core's clock and the kernel's.
   Board();
 
   const char* name() const override { return "microbit-v2"; }
@@ -88,9 +88,9 @@ private:
   ChipReset chip_reset_;
   Line line_;
   FlashStore<OwnFlash> store_{flash::kBytes - ROBOSYNC_STORE_BYTES,
-                              ROBOSYNC_STORE_BYTES};  // its end
+                              ROBOSYNC_STORE_BYTES};  // the end of the flash
   bool asks_ahead_ = false;
-  // 0: of the edge connector, pins 19 and 20; 1: of what is on the board.
+  // 0: the edge connector's, pins 19 and 20; 1: the bus of the parts on the board.
   std::array<I2c, 2> i2c_{I2c({kTwim1, {.clock = {0, 26}, .data = {1, 0}}}),
                           I2c({kTwim0, {.clock = {0, 8}, .data = {0, 16}}})};
 };

@@ -1,4 +1,4 @@
-// See clock.hpp. SysTick, which other boards sleep by, stands still on this chip while the core sleeps.
+// See clock.hpp. SysTick, which wakes the core on other boards, stops on this chip while the core sleeps.
 #include "runtime-m4/boards/microbit-v2/clock.hpp"
 
 namespace robosync::boards::microbit {
@@ -6,7 +6,7 @@ namespace robosync::boards::microbit {
 namespace {
 
 constexpr unsigned kLooks = 100'000;  // some 10 ms; the crystal takes less than one
-constexpr std::uint32_t kSlack = 8;   // counts in which what was written is at work
+constexpr std::uint32_t kSlack = 8;   // counts until a write takes effect
 
 }  // namespace
 

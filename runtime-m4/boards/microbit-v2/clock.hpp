@@ -1,4 +1,4 @@
-// The clocks: that of the core, and TIMER0, which says the time and ends the core's sleep.
+// The clocks: the core's, and TIMER0, which keeps the time and ends the core's sleep.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,19 @@
 
 namespace robosync::boards::microbit {
 
-// The chip comes out of reset with 64 MHz by an oscillator that may be wrong by some percent; from here on the crystal says
-// how long a second is. False when it does not begin to swing, which is a broken board.
+// After reset the chip runs at 64 MHz from an oscillator that may be off by a few percent; from here on it runs from the
+// crystal. False when the crystal does not start: the board is broken.
 [[nodiscard]] bool start_clock();
 
-// Counts of 1/16 us, up. Any state of the machine.
+// Counts up, in 1/16 us. [any processor state]
 //
-// Who interrupts between the two lines reads the clock too, and leaves a later count here: that is as true.
+// An interrupt between the two lines may read the clock, too, and leave a later count here, which is just as right.
 inline std::uint32_t counted() {
   timer::kReading.capture().write(kDoIt);
   return timer::kReading.value().read();
 }
 
-// After so many counts TIMER0 asks for its interrupt, once. True when that may be over by now, and so was missed.
+// TIMER0 requests its interrupt once, after so many counts. True if that time may have passed already, so that it was missed.
 [[nodiscard]] bool begin_alarm(std::uint32_t counts);
 void end_alarm();
 

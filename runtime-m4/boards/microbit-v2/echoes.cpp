@@ -19,8 +19,8 @@ constexpr std::uint32_t kPulse = 12;  // microseconds
 
 std::array<Echo, kInputs.size()> echoes;
 
-// What input i has for itself: of GPIOTE and of PPI two channels, for its edges and for the end of the pulse; of the timer a
-// channel that keeps the time of an edge, and one that says when the pulse ends.
+// The channels of input i: two each of GPIOTE and PPI, for its edges and for the end of the pulse; and two of the timer, one
+// that captures the time of an edge and one that ends the pulse.
 constexpr unsigned edges(std::size_t i) {
   return static_cast<unsigned>(2 * i);
 }
@@ -58,7 +58,7 @@ void start() {
   echo_timer::kStart.write(kDoIt);
 }
 
-// What the pin did before is nobody's. Nothing comes between the begin of the pulse and the word when it ends.
+// Edges from before the ping are discarded. The lock keeps interrupts out between the pulse's start and the setting of its end.
 void ping(std::uint16_t trigger, std::uint16_t echo) {
   const std::size_t i = find_input(kInputs, echo);
   const Pin* const output = pins::chip_pin(trigger);
@@ -77,7 +77,7 @@ void ping(std::uint16_t trigger, std::uint16_t echo) {
   end.write(end.read() + kPulse);
 }
 
-// The pin of the pulse is its port's again, which has it low.
+// Returns the pulse's pin to its port, which drives it low.
 std::uint32_t take(std::uint16_t echo) {
   const std::size_t i = find_input(kInputs, echo);
   if (i == kInputs.size()) return 0;
@@ -87,7 +87,7 @@ std::uint32_t take(std::uint16_t echo) {
   return echoes[i].take();
 }
 
-// It is forgotten before the level is read: an edge that comes in between calls again.
+// Clears the event before it reads the level: an edge in between interrupts again.
 void on_edge() {
   const port::Alone alone;
   for (std::size_t i = 0; i < kInputs.size(); ++i) {

@@ -1,5 +1,5 @@
-// How long an input is high after a pulse on an output. The chip measures it and ends the pulse by itself; an interrupt at each
-// of the two edges, of which no measurement has more, takes what was measured.
+// Measures how long an input is high after a pulse on an output. Hardware takes the times and ends the pulse; an interrupt at
+// each edge, at most two per measurement, reads the result.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace robosync::boards::microbit::echoes {
 
 void start();
 void ping(std::uint16_t trigger, std::uint16_t echo);
-// In microseconds; 0: it was not measured. It is over then.
+// Ends the measurement. In microseconds; 0: not measured.
 std::uint32_t take(std::uint16_t echo);
 void on_edge();  // [interrupt of GPIOTE]
 

@@ -1,5 +1,5 @@
-// See flash.hpp. Nordic's nRF52833 Product Specification, 4.3: a page is erased when its parts come to 85 ms; a part takes up to
-// 9 % longer than it should; a word takes 43 us.
+// See flash.hpp. Nordic's nRF52833 Product Specification, 4.3: a page is erased when its parts add up to 85 ms; a part takes up
+// to 9 % longer than specified; writing a word takes 43 us.
 #include "runtime-m4/boards/microbit-v2/flash.hpp"
 
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint32_t kPartMs = 2;
 constexpr unsigned kParts = 45;
-constexpr unsigned kMostLooks = 100'000;  // some 10 ms at the least
+constexpr unsigned kMostLooks = 100'000;  // at least some 10 ms
 
-// It stands in RAM, and calls nothing that does not: the core goes on, and looks at the line.
+// Runs from RAM and calls only code in RAM, so that the core keeps running and polls the line.
 [[gnu::section(".ram_code"), gnu::noinline]] bool erase_part(std::uint32_t page) {
   flash::kErasePartially.write(page);
   for (unsigned i = 0; i < kMostLooks; ++i) {

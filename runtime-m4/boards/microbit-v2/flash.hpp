@@ -1,5 +1,5 @@
-// The flash of the chip, for boards/common/flash_store.hpp: that of the core's own code. While it is erased or written, who wants to
-// read it stands still, the core too.
+// The chip's flash, for boards/common/flash_store.hpp. It also holds the core's code: during an erase or a write every access to
+// it stalls, including the core's.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ struct Flash {
   static constexpr std::size_t kUnit = 1;
   static constexpr bool kStalls = true;
 
-  // A page takes 85 ms. That is cut into parts of 2 ms: while one is at work nobody is served, but bytes of the line are
-  // kept (Uart::hold()).
+  // Erasing a page takes 85 ms, in parts of 2 ms. During a part nothing else runs, but bytes from the line are kept
+  // (Uart::hold()).
   static Erasing erase(std::uint32_t page, unsigned call);
   static bool is_busy() { return false; }  // between two parts
   static void program(std::uint32_t at, std::span<const std::uint32_t, kUnit> words);

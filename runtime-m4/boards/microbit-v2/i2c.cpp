@@ -5,7 +5,7 @@ namespace robosync::boards::microbit {
 
 namespace {
 
-constexpr unsigned kHalfBit = 24;  // turns of a loop of four cycles: 1.5 us
+constexpr unsigned kHalfBit = 24;  // iterations of a loop of four cycles: 1.5 us
 
 bool is_high(const Pin& pin) {
   return pin.levels().has(pin.mask());
@@ -50,7 +50,7 @@ Transfer TwimMaster::on_interrupt() {
   return wrong_ ? Transfer::failed : Transfer::done;
 }
 
-// A master that is off lets its pins go, whatever it was about.
+// Switching the master off aborts any transfer and releases its pins.
 void TwimMaster::let_go() const {
   master_.enable().write(0);
   forget(master_.error());

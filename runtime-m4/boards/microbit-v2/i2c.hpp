@@ -1,5 +1,5 @@
-// An I2C bus by one of the chip's masters with memory access of its own (TWIM), at 390 kHz. A data line that is held down gets its
-// clocks in 30 us.
+// An I2C bus on one of the chip's masters with DMA (TWIM), at 390 kHz. A data line that is held low gets its clocks within
+// 30 us.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ public:
 private:
   Twim master_;
   Lines lines_;
-  bool wrong_ = false;  // the transfer that runs
+  bool wrong_ = false;  // the running transfer has failed
 };
 using I2c = AskedBus<TwimMaster>;
 

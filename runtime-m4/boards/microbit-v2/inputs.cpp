@@ -1,4 +1,4 @@
-// See inputs.hpp. The buttons have pull-ups of their own (10 kΩ); the chip's do no harm beside them.
+// See inputs.hpp. The buttons have their own pull-ups (10 kΩ); the chip's do no harm in addition.
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 
 #include "runtime-m4/boards/common/inputs.hpp"

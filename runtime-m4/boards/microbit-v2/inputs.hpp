@@ -1,7 +1,7 @@
-// The pins that programs may read: those of the edge connector that the buttons A (5) and B (11) are on. A button of one's
-// own may be there as well, between the pin and GND.
+// The pins that programs may read: the edge connector's pins of the buttons A (5) and B (11). You may connect your own
+// button as well, between the pin and GND.
 //
-// They are inputs from start() on and never anything else, and pulled up: a pin that nothing is wired to reads high.
+// From start() on they are inputs and never anything else. They are pulled up: an unconnected pin reads high.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ void start();
 inline bool is_high(const Input& input) {
   return input.chip.levels().has(input.chip.mask());
 }
-// A pin that is no input: false.
+// False if the pin is not an input.
 bool is_high(std::uint16_t pin);
 
 }  // namespace robosync::boards::microbit::inputs

@@ -1,4 +1,4 @@
-// The interrupts of the board that the firmware uses, for boards/common/vectors.cpp. TIMER0's only ends the core's sleep,
+// The board's interrupts that the firmware uses, for boards/common/vectors.cpp. TIMER0's only ends the core's sleep,
 // and is never taken.
 #pragma once
 

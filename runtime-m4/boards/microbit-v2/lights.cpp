@@ -1,4 +1,4 @@
-// See lights.hpp. The timer goes on for one row behind a picture that has become dark, and is stopped then.
+// See lights.hpp. When the picture becomes dark, the timer runs for one more row before it is stopped.
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
 
 #include <array>
@@ -30,7 +30,7 @@ constexpr std::uint32_t columns_of(unsigned port) {
 }
 constexpr std::array<std::uint32_t, kPorts> kAllColumns{columns_of(0), columns_of(1)};
 
-// The row's columns, while no row is on.
+// Sets the columns for a row. No row may be on.
 void set_columns(std::uint32_t lit) {
   std::array<std::uint32_t, kPorts> low{};
   for (const Pin& column : kColumns) {
@@ -73,7 +73,7 @@ void show(std::uint32_t picture) {
   row_timer::kStart.write(kDoIt);
 }
 
-// The row before goes dark first, or its lights would glow in the columns of the next one.
+// The old row goes dark first, or its lights would glow in the columns of the next one.
 void next_row() {
   const port::Alone alone;
   forget(row_timer::kReached);

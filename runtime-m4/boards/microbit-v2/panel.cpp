@@ -1,5 +1,5 @@
-// See panel.hpp. The module fetches a picture from memory, and nobody is interrupted. A module that is off lets its pin go, which is
-// low then, as its port says.
+// See panel.hpp. The module fetches the picture from memory, without any interrupt. When it is off, it releases its pin, which
+// the port then drives low.
 #include "runtime-m4/boards/microbit-v2/panel.hpp"
 
 #include "runtime-m4/boards/common/panel_signal.hpp"
@@ -9,7 +9,7 @@
 namespace robosync::boards::microbit {
 namespace {
 
-// A byte takes 2 us, and a look a tenth of one at least: so long the end of what is given up is waited for, and no longer.
+// A byte takes 2 us and a poll at least 0.1 us: the polls wait for the last byte of a dropped picture, and no longer.
 constexpr unsigned kMostLooks = 20;
 
 void give_up() {
@@ -22,7 +22,7 @@ void give_up() {
 
 struct Spim {  // for PanelSignal
   static constexpr std::uint32_t kHz = panel_spi::kHz;
-  // 0.25 us high of 1.25, or 0.75.
+  // A zero is high for 0.25 us of 1.25 us, a one for 0.75 us.
   static constexpr unsigned kBitsOfBit = 5;
   static constexpr std::uint64_t kZero = 0b10000;
   static constexpr std::uint64_t kOne = 0b11100;

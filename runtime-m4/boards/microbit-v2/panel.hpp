@@ -1,4 +1,4 @@
-// A panel of WS2812 lights on an output of the edge connector (pins.hpp), which SPIM2 has while there is one.
+// A panel of WS2812 lights on an output of the edge connector (pins.hpp). While a program has one, the pin belongs to SPIM2.
 #pragma once
 
 #include "runtime-m4/boards/panel_output.hpp"

@@ -1,8 +1,8 @@
-// See pins.hpp. Each module plays one value for each of its channels, over and over, and fetches it anew for each period:
-// when in the period before, Nordic does not say. So a new pulse comes a frame later, or two.
+// See pins.hpp. Each module plays one value for each of its channels, over and over, and fetches it anew for each period.
+// Nordic does not specify when in the period before, so a new pulse comes one or two frames later.
 //
-// That is too late for a pin that is to go off: it is taken from its module, and is what its port says, which is low. It gets
-// its module again when that certainly gives it nothing: otherwise it would come into the midst of a pulse.
+// That is too late for a pin that is to go off: it is disconnected from its module, and its port drives it low. It is connected
+// again only when the module is guaranteed to be low for it: otherwise it would begin in the middle of a pulse.
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 
 #include <array>
@@ -26,14 +26,14 @@ constexpr Pin kEnableChip{1, 2};
 constexpr std::array kModules{kPwm0, kPwm1};
 
 constexpr std::uint16_t kFrame = 20'000;  // microseconds
-// Ends of a period after which a value is certainly at work; one more than it takes when the module fetches it a whole
-// period before.
+// Period ends after which a value is guaranteed to be in effect; one more than needed if the module fetches it a whole
+// period early.
 constexpr std::uint8_t kSettled = 3;
 
 struct State {
   std::uint16_t wanted = 0;       // pulse, in microseconds
-  std::uint8_t ended = kSettled;  // periods, since it went off
-  bool joined = false;            // the module has the pin
+  std::uint8_t ended = kSettled;  // periods since it went off
+  bool joined = false;            // the pin is connected to the module
 };
 std::array<State, kOutputs.size()> states;
 
@@ -72,7 +72,7 @@ void start(const Pwm& module, Values& its_values) {
   module.play().write(kDoIt);
 }
 
-// The value last: it comes with the begin of a period, and the pin must be there.
+// The value comes last: it takes effect at the beginning of a period, and the pin must be connected by then.
 void give(const Output& output, State& state) {
   kModules[output.module].pin(output.channel).write(output.chip.number());
   state.joined = true;
@@ -93,7 +93,7 @@ void low_at_once(const Output& output, State& state) {
   module.interrupt_on().write(Pwm::kPeriodEnds);
 }
 
-// True when a further period has to end.
+// True if another period has to end.
 bool waits(const Output& output, State& state) {
   if (state.ended == kSettled) return false;
   if (++state.ended < kSettled) return true;
@@ -103,7 +103,7 @@ bool waits(const Output& output, State& state) {
 
 }  // namespace
 
-// High before it is an output: nothing is let on in between.
+// The enable pin is set high before it becomes an output, so that it never switches on in between.
 void start() {
   kEnableChip.set_high().write(kEnableChip.mask());
   kEnableChip.configuration().write(Pin::kOutput);
@@ -149,7 +149,7 @@ std::uint32_t read(std::uint16_t pin) {
   return output == nullptr ? 0 : state_of(*output).wanted;
 }
 
-// A module that is off lets its pins go, whatever it was about.
+// Switching a module off releases its pins, even during a pulse.
 void switch_off() {
   enable(kEnable, false);
   for (const Pwm& module : kModules)

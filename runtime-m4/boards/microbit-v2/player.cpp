@@ -1,4 +1,4 @@
-// See player.hpp. The module fetches a command from memory while the processor does something else, and nobody is interrupted.
+// See player.hpp. The module fetches the command from memory in the background, without any interrupt.
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
@@ -11,7 +11,7 @@ policy::PlayerCommand sent;
 
 }  // namespace
 
-// The pin is high, as a line is where nobody speaks, before the module has it.
+// The pin is high, the idle level of a line, before the module takes it.
 void start() {
   player_uart::kTransmitPin.set_high().write(player_uart::kTransmitPin.mask());
   player_uart::kTransmitPin.configuration().write(Pin::kOutput);
@@ -22,7 +22,7 @@ void start() {
 
 void say(const policy::PlayerCommand& command) {
   sent = command;
-  asm volatile("" ::: "memory");  // the module reads it from there
+  asm volatile("" ::: "memory");  // the module reads it from memory
   player_uart::kSendFrom.write(port::bus_address(sent.data()));
   player_uart::kSendCount.write(sent.size());
   player_uart::kStartTransmitting.write(kDoIt);

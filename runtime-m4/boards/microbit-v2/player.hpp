@@ -6,7 +6,7 @@
 namespace robosync::boards::microbit::player {
 
 void start();
-// Begins to send it (boards::Board::say()).
+// Begins to send a command (boards::Board::say()).
 void say(const policy::PlayerCommand& command);
 
 }  // namespace robosync::boards::microbit::player

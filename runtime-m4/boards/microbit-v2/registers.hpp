@@ -1,5 +1,5 @@
-// The peripherals of the nRF52833 that the firmware uses, and how the micro:bit V2 wires them. Facts of Nordic's nRF52833
-// Product Specification (the chip) and of tech.microbit.org (the board).
+// The peripherals of the nRF52833 that the firmware uses, and how the micro:bit V2 wires them. Sources: Nordic's nRF52833
+// Product Specification (the chip) and tech.microbit.org (the board).
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ using port::Register;
 
 inline constexpr std::uint32_t kClockHz = 64'000'000;  // of the core
 
-// A task is done when 1 is written; an event stands until 0 is.
+// Writing 1 starts a task; an event stays set until 0 is written.
 inline constexpr std::uint32_t kDoIt = 1;
 
-// A write reaches a peripheral some cycles later. When it takes an interrupt back, its handler must not have ended by then:
-// the reading lets them pass.
+// A write reaches a peripheral a few cycles later. If it clears an interrupt, the handler must not end before that: the read
+// waits for it.
 inline void forget(Register event) {
   event.write(0);
   static_cast<void>(event.read());
@@ -28,7 +28,7 @@ inline constexpr Register kCrystalRuns{0x4000'0100};  // event
 }  // namespace clock
 
 namespace power {
-inline constexpr Register kResetReason{0x4000'0400};  // adds up; 1 forgets
+inline constexpr Register kResetReason{0x4000'0400};  // accumulates; write 1 to clear
 inline constexpr std::uint32_t kPinReset = 1U << 0;
 inline constexpr std::uint32_t kWatchdogReset = 1U << 1;
 inline constexpr std::uint32_t kLockup = 1U << 3;
@@ -36,7 +36,7 @@ inline constexpr std::uint32_t kLockup = 1U << 3;
 
 namespace flash {
 inline constexpr std::uint32_t kBytes = 512 * 1024;  // from 0 on
-inline constexpr Register kReady{0x4001'E400};       // with what was begun last
+inline constexpr Register kReady{0x4001'E400};       // the last operation has ended
 inline constexpr std::uint32_t kIsReady = 1U << 0;
 inline constexpr Register kConfiguration{0x4001'E504};
 inline constexpr std::uint32_t kReadOnly = 0;
@@ -52,26 +52,26 @@ struct Pin {  // {0, 6} is P0.06
   unsigned port, bit;
 
   constexpr std::uint32_t mask() const { return 1U << bit; }
-  // As peripherals are told which one they have.
+  // The value that selects this pin in a peripheral's register.
   constexpr std::uint32_t number() const { return port << 5 | bit; }
   constexpr Register set_high() const { return {base() + 0x508}; }
   constexpr Register set_low() const { return {base() + 0x50C}; }
   constexpr Register levels() const { return {base() + 0x510}; }
   constexpr Register configuration() const { return {base() + 0x700 + std::uintptr_t{4} * bit}; }
 
-  static constexpr std::uint32_t kOutput = 0b11;  // which nobody reads
+  static constexpr std::uint32_t kOutput = 0b11;  // input buffer disconnected
   static constexpr std::uint32_t kInputPulledUp = 0b1100;
   static constexpr std::uint32_t kAnalog = 0b10;  // nothing drives it, and no level is read
-  // Pulled up, and low or let go: S0D1. TWIM has them as inputs.
+  // Pulled up, open drain: S0D1. TWIM wants its pins as inputs.
   static constexpr std::uint32_t kBusLine = 6 << 8 | 0b1100;
   static constexpr std::uint32_t kDrivenBusLine = kBusLine | 1;
 
 private:
   constexpr std::uintptr_t base() const { return 0x5000'0000 + std::uintptr_t{0x300} * port; }
 };
-inline constexpr std::uint32_t kNoPin = 1U << 31;  // in the place of a pin's number
+inline constexpr std::uint32_t kNoPin = 1U << 31;  // instead of a pin's number
 
-namespace uart {  // UART0, the one without DMA, to the interface chip, which is a serial port of USB
+namespace uart {  // UART0, the one without DMA, to the interface chip, which is a USB serial port
 inline constexpr unsigned kInterrupt = 2;
 inline constexpr Pin kTransmitPin{0, 6};
 inline constexpr Pin kReceivePin{1, 8};
@@ -79,7 +79,7 @@ inline constexpr Register kStartReceiving{0x4000'2000};
 inline constexpr Register kStartTransmitting{0x4000'2008};
 inline constexpr Register kReceived{0x4000'2108};     // event: the next byte is in kReceive
 inline constexpr Register kSent{0x4000'211C};         // event: the byte has left
-inline constexpr Register kInterruptOn{0x4000'2304};  // reads as what is on
+inline constexpr Register kInterruptOn{0x4000'2304};  // reads the enabled interrupts
 inline constexpr Register kInterruptOff{0x4000'2308};
 inline constexpr std::uint32_t kWhenReceived = 1U << 2;
 inline constexpr std::uint32_t kWhenSent = 1U << 7;
@@ -93,7 +93,7 @@ inline constexpr Register kBaudRate{0x4000'2524};
 inline constexpr std::uint32_t k115200 = 0x01D7'E000;
 }  // namespace uart
 
-namespace player_uart {  // UARTE1, which fetches what it sends from memory: to a sound player, on pin 15 of the edge connector
+namespace player_uart {  // UARTE1, with DMA, to a sound player on pin 15 of the edge connector
 inline constexpr std::uintptr_t kBase = 0x4002'8000;
 inline constexpr Pin kTransmitPin{0, 13};
 inline constexpr Register kStartTransmitting{kBase + 0x008};
@@ -106,12 +106,12 @@ inline constexpr Register kSendFrom{kBase + 0x544};
 inline constexpr Register kSendCount{kBase + 0x548};
 }  // namespace player_uart
 
-namespace panel_spi {  // SPIM2, whose data go to a panel of lights; it has no clock pin, and hears nothing
+namespace panel_spi {  // SPIM2, for a panel of lights; it has no clock pin, and receives nothing
 inline constexpr std::uintptr_t kBase = 0x4002'3000;
 inline constexpr Register kStart{kBase + 0x010};
 inline constexpr Register kStop{kBase + 0x014};
 inline constexpr Register kStopped{kBase + 0x104};  // event
-inline constexpr Register kEnded{kBase + 0x118};    // event: all has left
+inline constexpr Register kEnded{kBase + 0x118};    // event: everything has left
 inline constexpr Register kEnable{kBase + 0x500};
 inline constexpr std::uint32_t kOn = 7;
 inline constexpr Register kOutputPin{kBase + 0x50C};
@@ -144,7 +144,7 @@ inline constexpr Channel kAlarm{0};
 inline constexpr Channel kReading{1};
 }  // namespace timer
 
-namespace echo_timer {  // TIMER3, whose counts are microseconds
+namespace echo_timer {  // TIMER3, which counts microseconds
 inline constexpr std::uintptr_t kBase = 0x4001'A000;
 inline constexpr Register kStart{kBase};
 inline constexpr Register kWidth{kBase + 0x508};
@@ -161,7 +161,7 @@ constexpr Register value(unsigned channel) {
 }
 }  // namespace echo_timer
 
-namespace gpiote {  // channels that drive a pin by tasks, or tell its edges as events
+namespace gpiote {  // channels that drive a pin by tasks, or report its edges as events
 inline constexpr unsigned kInterrupt = 6;
 inline constexpr std::uintptr_t kBase = 0x4000'6000;
 constexpr Register set_high(unsigned channel) {
@@ -182,12 +182,12 @@ inline constexpr std::uint32_t kOff = 0;
 constexpr std::uint32_t edges_of(Pin pin) {
   return 1U | pin.number() << 8 | 3U << 16;
 }
-constexpr std::uint32_t drives(Pin pin) {  // from low on
+constexpr std::uint32_t drives(Pin pin) {  // initially low
   return 3U | pin.number() << 8;
 }
 }  // namespace gpiote
 
-namespace ppi {  // what is wired between events and tasks: no instruction is needed
+namespace ppi {  // connects events to tasks in hardware
 inline constexpr std::uintptr_t kBase = 0x4001'F000;
 inline constexpr Register kOn{kBase + 0x504};  // a bit a channel
 constexpr Register event(unsigned channel) {
@@ -198,13 +198,13 @@ constexpr Register task(unsigned channel) {
 }
 }  // namespace ppi
 
-namespace saadc {  // measures voltages, and puts what it measures into memory by itself
+namespace saadc {  // measures voltages, and writes the results to memory by DMA
 inline constexpr std::uintptr_t kBase = 0x4000'7000;
 inline constexpr Register kStart{kBase};
 inline constexpr Register kSample{kBase + 0x004};
 inline constexpr Register kStop{kBase + 0x008};
 inline constexpr Register kCalibrate{kBase + 0x00C};
-inline constexpr Register kStarted{kBase + 0x100};     // event: it knows where the results go
+inline constexpr Register kStarted{kBase + 0x100};     // event: it has the results' address
 inline constexpr Register kEnded{kBase + 0x104};       // event: all results are there
 inline constexpr Register kCalibrated{kBase + 0x110};  // event
 inline constexpr Register kStopped{kBase + 0x114};     // event
@@ -213,7 +213,8 @@ inline constexpr std::uint32_t kOn = 1;
 inline constexpr Register kInput{kBase + 0x510};  // of channel 0: 1 is AIN0
 inline constexpr std::uint32_t kNoInput = 0;
 inline constexpr Register kConfiguration{kBase + 0x518};
-// A quarter of the voltage is compared with a quarter of the supply, when it was taken for 10 us: from 100 kΩ at most.
+// A quarter of the voltage is compared with a quarter of the supply after 10 us of acquisition, which suits sources up to
+// 100 kΩ.
 inline constexpr std::uint32_t kPartOfSupply = 2U << 8 | 1U << 12 | 2U << 16;
 inline constexpr Register kResolution{kBase + 0x5F0};
 inline constexpr std::uint32_t k12Bits = 2;
@@ -221,34 +222,34 @@ inline constexpr Register kResultsTo{kBase + 0x62C};
 inline constexpr Register kResultCount{kBase + 0x630};
 }  // namespace saadc
 
-namespace row_timer {  // TIMER1: when the next row of the lights is on
+namespace row_timer {  // TIMER1, which switches to the next row of the lights
 inline constexpr unsigned kInterrupt = 9;
 inline constexpr Register kStart{0x4000'9000};
 inline constexpr Register kStop{0x4000'9004};
-inline constexpr Register kReached{0x4000'9140};  // event: it has come to kValue
+inline constexpr Register kReached{0x4000'9140};  // event: it has reached kValue
 inline constexpr Register kShortcuts{0x4000'9200};
 inline constexpr std::uint32_t kBeginAgain = 1U << 0;
 inline constexpr Register kInterruptOn{0x4000'9304};
 inline constexpr std::uint32_t kWhenReached = 1U << 16;
 inline constexpr Register kPrescaler{0x4000'9510};
 inline constexpr std::uint32_t kMicroseconds =
-    4;  // 16 MHz / 16; of 16 bits, as it comes out of reset
+    4;  // 16 MHz / 16; the timer has 16 bits, its reset value
 inline constexpr Register kValue{0x4000'9540};
 }  // namespace row_timer
 
-namespace watchdog {  // WDT, on the oscillator of 32,768 Hz
+namespace watchdog {  // WDT, on the 32,768 Hz oscillator
 inline constexpr std::uint32_t kHz = 32'768;
 inline constexpr Register kStart{0x4001'0000};
 inline constexpr Register kReload{0x4001'0504};  // counts - 1
 inline constexpr Register kKicksAsked{0x4001'0508};
 inline constexpr std::uint32_t kFirst = 1U << 0;
 inline constexpr Register kConfiguration{0x4001'050C};
-inline constexpr std::uint32_t kRunsInSleep = 1U << 0;  // and not while a debugger halts the core
+inline constexpr std::uint32_t kRunsInSleep = 1U << 0;  // but not while a debugger halts the core
 inline constexpr Register kKick{0x4001'0600};           // the first one
 inline constexpr std::uint32_t kKicked = 0x6E52'4635;
 }  // namespace watchdog
 
-// A master of I2C that fetches what it writes from memory by itself, and puts what it reads there.
+// An I2C master with DMA in both directions.
 struct Twim {
   std::uintptr_t base;
   unsigned interrupt;
@@ -260,7 +261,7 @@ struct Twim {
   constexpr Register error() const { return {base + 0x124}; }    // event: it has not stopped
   constexpr Register shortcuts() const { return {base + 0x200}; }
   constexpr Register interrupt_on() const { return {base + 0x304}; }
-  constexpr Register errors() const { return {base + 0x4C4}; }  // which; 1 forgets
+  constexpr Register errors() const { return {base + 0x4C4}; }  // which; write 1 to clear
   constexpr Register enable() const { return {base + 0x500}; }
   constexpr Register clock_pin() const { return {base + 0x508}; }
   constexpr Register data_pin() const { return {base + 0x50C}; }
@@ -277,15 +278,15 @@ struct Twim {
   static constexpr std::uint32_t kStopWhenRead = 1U << 12;
   static constexpr std::uint32_t kWhenStopped = 1U << 1;  // interrupts
   static constexpr std::uint32_t kWhenWrong = 1U << 9;
-  // At 400 kHz the clock is low for less than I2C asks for (Nordic's anomaly 219).
+  // At 400 kHz the clock's low time is shorter than I2C requires (Nordic's anomaly 219).
   static constexpr std::uint32_t k390kHz = 0x0620'0000;
   static constexpr std::uint32_t kAllErrors = 0b111;
 };
 inline constexpr Twim kTwim0{0x4000'3000, 3};
 inline constexpr Twim kTwim1{0x4000'4000, 4};
 
-// What gives pulses: a counter of 15 bits, and four channels that are compared with it. What they are compared with the
-// module fetches itself from memory, anew for each period (pins.cpp).
+// A PWM module: a 15-bit counter and four channels, each with a compare value. The module fetches the compare values from
+// memory, anew for each period (pins.cpp).
 struct Pwm {
   std::uintptr_t base;
   unsigned interrupt;
@@ -309,7 +310,7 @@ struct Pwm {
   constexpr Register count(unsigned sequence) const {
     return {base + 0x524 + std::uintptr_t{0x20} * sequence};
   }
-  // Periods that a value is kept for besides its own, and that come behind a sequence.
+  // refresh: further periods in which a value is repeated; end_delay: periods after a sequence.
   constexpr Register refresh(unsigned sequence) const {
     return {base + 0x528 + std::uintptr_t{0x20} * sequence};
   }
@@ -324,11 +325,11 @@ struct Pwm {
   static constexpr std::uint32_t kPeriodEnds = 1U << 6;  // interrupt
   static constexpr std::uint32_t kPlayAgain = 1U << 2;   // when all loops are done
   static constexpr std::uint32_t kMicroseconds = 4;      // 16 MHz / 16
-  static constexpr std::uint32_t kValueEach = 2;         // a channel
+  static constexpr std::uint32_t kValueEach = 2;         // for each channel
   static constexpr std::uint32_t kValuesAndTop = 3;  // three channels, and where the counter ends
   static constexpr std::uint32_t kMostLoops = 0xFFFF;
-  // A value that is compared: from the begin of the period the channel is high, or it is low, until the counter has
-  // come so far; for ever, when that is behind the counter's end.
+  // A compare value: the channel is high (kHighUntil) or low from the beginning of the period until the counter reaches
+  // the value; for the whole period, if the value is beyond the counter's top.
   static constexpr std::uint16_t kHighUntil = 1U << 15;
   static constexpr std::uint16_t kNever = 0x7FFF;
 };

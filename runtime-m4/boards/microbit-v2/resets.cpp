@@ -5,7 +5,7 @@
 
 namespace robosync::boards::microbit {
 
-// After a reset by the pin other bits may be set that should not (Nordic's anomaly 136).
+// After a pin reset, other bits may be set by mistake (Nordic's anomaly 136).
 ChipReset take_reset_cause() {
   const std::uint32_t causes = power::kResetReason.read();
   power::kResetReason.write(causes);
@@ -14,7 +14,7 @@ ChipReset take_reset_cause() {
   return (causes & power::kLockup) != 0 ? ChipReset::lockup : ChipReset::other;
 }
 
-// It may run already, as a reset by the core may leave it alone: then it does not hear what is said here, but the kick.
+// It may be running already, since a reset by the core may not stop it. Then it ignores these settings, but not the kick.
 void start_watchdog(std::uint32_t ms) {
   watchdog::kConfiguration.write(watchdog::kRunsInSleep);
   watchdog::kReload.write(watchdog::kHz * ms / 1000 - 1);

@@ -1,8 +1,8 @@
 // The watchdog, and what reset the chip.
 //
-// The watchdog (WDT) runs on an oscillator of its own, which is right to some percent, and once started nothing stops it but a
-// reset. Its interrupt comes two of its counts, 61 us, before the reset, and can be masked: too late and too weak to do
-// something that the reset does not do, so nobody asks for it. The reset lets all pins go.
+// The watchdog (WDT) runs on its own oscillator, which is accurate to a few percent. Once started, only a reset stops it. Its
+// interrupt comes two counts, 61 us, before the reset and can be masked, so it could do nothing that the reset does not do;
+// it is not used. The reset releases all pins.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ namespace robosync::boards::microbit {
 
 enum class ChipReset { other, watchdog, lockup };
 
-// What was noted in the chip, which is forgotten there: the next reset adds to it.
+// Reads and clears the chip's reset flags, which accumulate over resets.
 ChipReset take_reset_cause();
 
-// `ms`: from the last kick to the reset.
+// `ms`: time from the last kick to the reset.
 void start_watchdog(std::uint32_t ms);
 void kick_watchdog();
 

@@ -1,5 +1,5 @@
-// See speaker.hpp. The module plays one value over and over, and fetches it anew for each period, with where the period ends.
-// While it is silent the pin is not the module's, but low.
+// See speaker.hpp. The module plays one value over and over, and fetches it anew for each period, together with the period's
+// length. In silence the pin is disconnected from the module, and low.
 #include "runtime-m4/boards/microbit-v2/speaker.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ constexpr Pin kPin{0, 0};
 constexpr Pwm kModule = kPwm2;
 constexpr std::uint32_t kCountHz = 1'000'000;
 constexpr std::uint32_t kShortest = 4;  // counts; 250 kHz
-constexpr std::size_t kTop = 3;         // of the values
-constexpr std::uint16_t kSilent = 500;  // counts; a tone begins when this period has ended
+constexpr std::size_t kTop = 3;         // index in `values`
+constexpr std::uint16_t kSilent = 500;  // counts; a tone begins at the end of this period
 
 alignas(4) std::array<volatile std::uint16_t, Pwm::kChannels> values;
 

@@ -1,4 +1,4 @@
-// The speaker, on a pin of its own, by the module PWM2. It is silent from start() on.
+// The speaker, on its own pin, driven by the module PWM2. start() leaves it silent.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 namespace robosync::boards::microbit::speaker {
 
 void start();
-// The tone from now on, in Hz, from 31 on; 0 is silent, at once. Any state of the machine.
+// Plays a tone of at least 31 Hz; 0 is silent immediately. [any processor state]
 void sound(std::uint32_t hertz);
 
 }  // namespace robosync::boards::microbit::speaker

@@ -1,4 +1,4 @@
-// UART0, which the interface chip of the board makes a serial port of USB: the link's serial line.
+// UART0, which the board's interface chip connects to USB as a serial port: the link's serial line.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace robosync::boards::microbit {
 
-// All of it but what the core's interrupt controller is told: for SerialLine.
+// For SerialLine: everything except enabling the interrupt in the core.
 class Uart {
 public:
-  // Both pins are high, as a line is where nobody speaks, before UART0 has them.
+  // Both pins are high, the idle level of a line, before UART0 takes them.
   static void open() {
     uart::kTransmitPin.set_high().write(uart::kTransmitPin.mask());
     uart::kTransmitPin.configuration().write(Pin::kOutput);
@@ -29,7 +29,7 @@ public:
     uart::kStartReceiving.write(kDoIt);
   }
 
-  // It takes a byte when the one before has left, which it says once. [interrupt]
+  // UART0 takes a byte when the one before has left; it reports that once. [interrupt]
   static bool can_send() {
     if (sends_ && uart::kSent.read() != 0) {
       forget(uart::kSent);
@@ -42,12 +42,12 @@ public:
     uart::kTransmit.write(std::to_integer<std::uint32_t>(byte));
   }
 
-  // Behind the byte that is read up to five more wait; the next one says so anew.
+  // Up to five more bytes may wait behind the one that is read; the next one sets the event again.
   static bool has_received() { return holds() || uart::kReceived.read() != 0; }
   static std::byte receive() { return holds() ? static_cast<std::byte>(held_[taken_++]) : next(); }
 
-  // While interrupts have to wait for longer than six bytes take: puts a byte that has come where receive() finds it. Part
-  // of who calls it, which may not be in the flash.
+  // For times when interrupts are delayed by more than six bytes: stores a received byte for receive(). Inlined, because its
+  // caller must not execute from flash.
   [[gnu::always_inline]] static void hold() {
     if (uart::kReceived.read() == 0 || count_ == held_.size()) return;
     uart::kReceived.write(0);
@@ -55,7 +55,7 @@ public:
     count_ = count_ + 1;
   }
   static bool holds() { return taken_ != count_; }
-  // Before the first hold() of several.
+  // Call it before a series of hold().
   static void let_go() {
     if (holds()) return;
     taken_ = 0;
@@ -76,7 +76,7 @@ private:
   static inline bool sends_ = false;  // a byte is on its way
   static inline std::array<std::uint8_t, 32> held_{};
   static inline std::size_t count_ = 0;
-  static inline std::size_t taken_ = 0;  // of them
+  static inline std::size_t taken_ = 0;  // of held_
 };
 
 }  // namespace robosync::boards::microbit

@@ -1,5 +1,5 @@
-// What ends the core's sleep: the dual timer, once. SysTick would do, but in QEMU 7.2 a timer that
-// begins again while the core sleeps takes all of its next period with it (with sleep=off).
+// The dual timer, in one-shot mode, ends the core's sleep. SysTick would do, but in QEMU 7.2 a timer that
+// restarts while the core sleeps skips its whole next period (with sleep=off).
 #include "runtime-m4/boards/mps2-an386/registers.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"

@@ -88,7 +88,7 @@ void Board::watchdog_start() {
   watchdog().lock = kWatchdogUnlock;
   watchdog().load = kWatchdogTicks;
   watchdog().control = kWatchdogOn;
-  watchdog().lock = 0;  // no stray write stops it now
+  watchdog().lock = 0;  // no stray write can stop it now
 }
 
 void Board::watchdog_kick() {
@@ -118,8 +118,8 @@ void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
 void Uart1Transmit_Handler();
 
-// The watchdog was not kicked in time. It cannot be masked, so the outputs go off whatever hangs;
-// then the second time-out resets.
+// The watchdog was not kicked in time. An NMI cannot be masked, so the outputs go off whatever hangs;
+// then the second time-out resets the board.
 void NMI_Handler() {
   robosync::boards::switch_outputs_off();
   robosync::boards::keep_watchdog_reset();

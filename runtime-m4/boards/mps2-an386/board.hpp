@@ -1,9 +1,9 @@
-// The MPS2 board with AN386 (Cortex-M4, 25 MHz), as QEMU's mps2-an386 has it.
+// The MPS2 board with AN386 (Cortex-M4, 25 MHz), as emulated by QEMU's mps2-an386.
 //
-// It has no PWM and no pins that could be read. PWM pins are words in memory, `robosync_virtual_pwm`, which the
-// host reads, and input pins the bits of a word that it writes, `robosync_virtual_inputs`. Of an echo it writes how long it
-// is, `robosync_virtual_echoes`, and no trigger pin does anything; of an analog input its counts, `robosync_virtual_analog`.
-// Everything above this file is as it would be on real pins.
+// It has no PWM and no pins that could be read, so they are words in memory. The host reads the PWM pins,
+// `robosync_virtual_pwm`, and writes the input pins, bits of `robosync_virtual_inputs`. It writes the length of each echo,
+// `robosync_virtual_echoes` (trigger pins have no effect), and the counts of each analog input, `robosync_virtual_analog`.
+// Everything above this file is the same as with real pins.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@ extern "C" std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_
 extern "C" volatile std::uint32_t robosync_virtual_inputs;  // bit i: pin kFirstInput + i is high
 inline constexpr std::uint16_t kFirstInput = 40;
 inline constexpr std::uint16_t kVirtualInputs = 4;
-// How long each of them is high after a pulse on a trigger pin, in microseconds; 0: it says nothing.
+// How long each input is high after a pulse on a trigger pin, in microseconds; 0: no echo.
 extern "C" std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes;
-// The counts of each analog input, to boards::kAnalogFull; more: it does not answer.
+// The counts of each analog input, up to boards::kAnalogFull; more: it does not answer.
 inline constexpr std::uint16_t kFirstAnalog = 44;
 inline constexpr std::uint16_t kVirtualAnalog = 4;
 extern "C" std::array<volatile std::uint32_t, kVirtualAnalog> robosync_virtual_analog;
 
-// The level of each pin at an enable input: 1 is high, and off.
+// The level of each pin at an enable input: 1 is high, which is off.
 inline constexpr std::uint16_t kFirstEnable = 36;
 inline constexpr std::uint16_t kVirtualEnables = 2;
 extern "C" std::array<volatile std::uint32_t, kVirtualEnables> robosync_virtual_enables;
@@ -40,10 +40,10 @@ namespace robosync::boards::mps2 {
 
 class Board final : public boards::Board {
 public:
-  // First time-out: NMI, outputs off. The second one, as long again after the last kick: reset.
+  // First time-out: NMI, outputs off. Second time-out, after as long again: reset.
   static constexpr std::uint32_t kWatchdogMs = 50;
 
-  // Starts the clock of the kernel.
+  // Starts the kernel's clock.
   Board();
 
   const char* name() const override { return "mps2-an386"; }

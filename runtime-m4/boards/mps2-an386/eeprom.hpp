@@ -1,4 +1,4 @@
-// An AT24C512 on the I2C bus as the board's store: pages of 128 bytes, two bytes of address. Microchip
+// An AT24C512 on the I2C bus as the board's store: pages of 128 bytes, two address bytes. Microchip
 // AT24C512C, DS20006218: a page write takes up to 5 ms, in which the device does not acknowledge.
 #pragma once
 

@@ -6,13 +6,13 @@ namespace robosync::boards::mps2 {
 
 namespace {
 
-// Turns of the waiting loop: four cycles each, 5 µs at 25 MHz.
+// Iterations of the waiting loop: four cycles each, 5 µs at 25 MHz.
 constexpr std::uint16_t kHalfBit = kClockHz / 200'000 / 4;
-// With what the code between takes: 1.25 µs.
+// 1.25 µs, including the code in between.
 constexpr std::uint16_t kFastHalfBit = kHalfBit / 6;
-// As long as devices may hold the clock down in one transfer, in half bits: 1 ms.
+// How long devices may hold the clock low in one transfer, in half bits: 1 ms.
 constexpr unsigned kStretchLimit = 200;
-constexpr unsigned kMostClocks = 9;  // a byte, and its acknowledgement
+constexpr unsigned kMostClocks = 9;  // a byte and its acknowledge bit
 
 }  // namespace
 
@@ -35,8 +35,8 @@ bool I2c::is_high(std::uint32_t line) const {
   return (at<I2cRegisters>(registers_).set & line) != 0;
 }
 
-// A device may hold the clock down to gain time; not for ever. A sensor that has taken the bus from the store is
-// through when this one is on again: then nobody uses it.
+// A device may hold the clock low to gain time, but not for ever. If a sensor took the bus from the store, its transfer is over
+// when the store's thread runs again: the bus then has no user.
 bool I2c::release_clock() {
   release(kI2cClock);
   half_bit();
@@ -72,7 +72,7 @@ bool I2c::start() {
   return true;
 }
 
-// Also when the clock does not come up: whoever comes next finds the data line let go.
+// Releases the data line even if the clock does not rise, so that the next user finds it free.
 void I2c::stop() {
   pull(kI2cData);
   half_bit();
@@ -115,7 +115,7 @@ bool I2c::read_byte(std::byte& byte, bool last) {
     value = value << 1 | (bit ? 1U : 0U);
   }
   byte = static_cast<std::byte>(value);
-  return write_bit(last);  // not acknowledging ends the reading
+  return write_bit(last);  // a NACK ends the read
 }
 
 bool I2c::write_message(std::uint8_t address, std::span<const std::byte> out) {
@@ -134,15 +134,15 @@ bool I2c::read_message(std::uint8_t address, std::span<std::byte> in) {
   return true;
 }
 
-// Nobody waits again for a line that was held down before: others want the processor. False also when a sensor has
-// used the bus meanwhile.
+// Does not wait again for a line that was already held low: other threads need the processor. Also false if a sensor has
+// used the bus in the meantime.
 bool I2c::prepare(bool taken) {
   patience_ = held_ ? 0 : kStretchLimit;
   const std::uint16_t clears = clears_;
   const bool held = !free_bus();
   if (user_.load(std::memory_order_relaxed) == User::nobody) return false;
   held_ = held;
-  // In the midst of the store's transfer its device may have been about to acknowledge: that was no fault of the bus.
+  // The store's device may have been about to acknowledge when its transfer was interrupted: not a fault of the bus.
   if (taken && !held) {
     clears_ = clears;
     pull(kI2cClock);

@@ -1,12 +1,11 @@
 // An I2C master on two open-drain lines driven by software, about 100 kHz.
 //
-// Two kinds of users: sensors, and the board's store, which ranks below them. A sensor takes the bus away from the store
-// in the middle of a transfer, so that it never waits for it.
+// It has two kinds of users: sensors, and the board's store, which ranks below them. A sensor takes the bus away from the store
+// even in the middle of a transfer, so that it never waits for it.
 //
-// Bounded: a device that holds the clock down, holds the data line down or does not answer makes a
-// transfer fail, never hang. A data line found held down is freed with clocks, nine at most (a device that was
-// interrupted in the middle of a byte then lets go), before the transfer is tried. While a line stays held down, a
-// transfer is over at once.
+// Time is bounded: a device that holds the clock low, holds the data line low or does not answer makes a
+// transfer fail, never hang. If the data line is held low before a transfer, up to nine clocks free it (a device that was
+// interrupted in the middle of a byte then releases it). While a line stays low, a transfer fails immediately.
 #pragma once
 
 #include <atomic>
@@ -22,13 +21,13 @@ class I2c {
 public:
   explicit constexpr I2c(std::uintptr_t registers) : registers_(registers) {}
 
-  // Writes `out`, then, after a repeated start, reads `in`; an empty one is left out. False when
+  // Writes `out`, then, after a repeated start, reads `in`; an empty one is skipped. False when
   // the device does not acknowledge or the bus is stuck. About 100 µs a byte.
   // [one thread at a time]
   [[nodiscard]] bool transfer(std::uint8_t address, std::span<const std::byte> out,
                               std::span<std::byte> in);
-  // The same for the store, about 400 kHz. `taken`: a transfer() came between, and has told the device to forget. While it
-  // reads none may come: a device that sends lets go of the bus when it likes.  [the thread with the lowest rank]
+  // The same for the store, about 400 kHz. `taken`: a transfer() preempted it and has made the device abort. No transfer() may
+  // come during a read: a sending device may hold the data line.  [the thread with the lowest rank]
   [[nodiscard]] Store::Outcome transfer_between(std::uint8_t address,
                                                 std::span<const std::byte> out,
                                                 std::span<std::byte> in);
@@ -56,11 +55,11 @@ private:
 
   std::uintptr_t registers_;
   std::uint16_t clears_ = 0;
-  std::uint16_t half_bit_ = 1;  // turns of its loop, for who uses the bus
+  std::uint16_t half_bit_ = 1;  // iterations of half_bit() for the current user
   bool held_ = false;
   std::atomic<User> user_ = User::nobody;
   std::atomic<bool> taken_ = false;  // by a sensor, from the store
-  unsigned patience_ = 0;            // half bits that devices may still gain
+  unsigned patience_ = 0;            // half bits for which devices may still hold the clock low
 };
 
 }  // namespace robosync::boards::mps2

@@ -1,4 +1,4 @@
-// The interrupts of the board that the firmware uses, for boards/common/vectors.cpp.
+// The board's interrupts that the firmware uses, for boards/common/vectors.cpp.
 #pragma once
 
 #include "runtime-m4/boards/common/vectors.hpp"
@@ -8,7 +8,7 @@ extern "C" {
 void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
 void Uart1Transmit_Handler();
-// Nobody's in the firmware; the kernel's tests have them (mps2_an386.ld).
+// Unused in the firmware; the kernel's tests define them (mps2_an386.ld).
 void Timer0_Handler();
 void TestsOwn_Handler();
 }

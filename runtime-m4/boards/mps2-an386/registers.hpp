@@ -1,5 +1,5 @@
 // The peripherals of the MPS2 board with FPGA image AN386 (Cortex-M4) that the firmware uses.
-// Application note AN386, and the CMSDK manual for UART and watchdog.
+// Sources: application note AN386, and the CMSDK manual for UART and watchdog.
 #pragma once
 
 #include <cstddef>
@@ -29,10 +29,10 @@ inline constexpr std::uint32_t kUartTransmitted = 1U << 0;
 inline constexpr std::uint32_t kUartReceived = 1U << 1;
 
 struct I2cRegisters {            // SBCon: two open-drain lines that software drives
-  volatile std::uint32_t set;    // read: state of the lines; write 1: let the line go
-  volatile std::uint32_t clear;  // write 1: pull the line down
+  volatile std::uint32_t set;    // read: state of the lines; write 1: release the line
+  volatile std::uint32_t clear;  // write 1: pull the line low
 };
-inline constexpr std::uintptr_t kI2c0 = 0x4002'A000;  // the bus on which QEMU puts -device
+inline constexpr std::uintptr_t kI2c0 = 0x4002'A000;  // QEMU attaches -device to this bus
 inline constexpr std::uint32_t kI2cClock = 1U << 0;
 inline constexpr std::uint32_t kI2cData = 1U << 1;
 
@@ -51,7 +51,7 @@ inline constexpr std::uintptr_t kWatchdog = 0x4000'8000;
 inline constexpr std::uint32_t kWatchdogOn = 0b11;  // first time-out: NMI, second: reset
 inline constexpr std::uint32_t kWatchdogUnlock = 0x1ACC'E551;
 
-struct TimerRegisters {  // CMSDK APB timer: counts down, and begins again at `reload`
+struct TimerRegisters {  // CMSDK APB timer: counts down, and restarts from `reload`
   volatile std::uint32_t control;
   volatile std::uint32_t value;  // timer 1's is robosync_clock in the linker script
   volatile std::uint32_t reload;
@@ -59,7 +59,7 @@ struct TimerRegisters {  // CMSDK APB timer: counts down, and begins again at `r
 };
 inline constexpr std::uintptr_t kTimer1 = 0x4000'1000;
 inline constexpr unsigned kTimer0Interrupt = 8;
-inline constexpr unsigned kFreeInterrupt = 20;  // of no device
+inline constexpr unsigned kFreeInterrupt = 20;  // no device uses it
 inline constexpr std::uint32_t kTimerOn = 1U << 0;
 
 struct OneShotRegisters {  // CMSDK APB dual timer, the first of the two: counts down
@@ -70,7 +70,7 @@ struct OneShotRegisters {  // CMSDK APB dual timer, the first of the two: counts
 };
 inline constexpr std::uintptr_t kDualTimer = 0x4000'2000;
 inline constexpr unsigned kDualTimerInterrupt = 10;
-inline constexpr std::uint32_t kOneShot = 0b10'0011;  // once, 32 bits, with its interrupt
+inline constexpr std::uint32_t kOneShot = 0b10'0011;  // one-shot, 32 bits, interrupt enabled
 inline constexpr std::uint32_t kOneShotOn = kOneShot | 1U << 7;
 
 template <typename Registers>

@@ -1,4 +1,4 @@
-// UART0: the link's serial line. UART1: the one to a sound player.
+// UART0: the link's serial line. UART1: the line to a sound player.
 #pragma once
 
 #include <cstddef>
@@ -23,11 +23,11 @@ struct Transmitter {
   static bool can_send() { return (registers().state & kUartStateTransmitFull) == 0; }
   static void send(std::byte byte) { registers().data = std::to_integer<std::uint32_t>(byte); }
 
-  // It interrupts when a byte has left, and not before.
+  // The UART interrupts only when a byte has left, so the first interrupt is pended here.
   static void begin_to_send() { port::core::pend_interrupt(kInterrupt); }
   static void nothing_to_send() {}
 
-  // The interrupt was seen.
+  // Acknowledges the interrupt.
   static void clear_transmitted() { registers().interrupt = kUartTransmitted; }
 };
 

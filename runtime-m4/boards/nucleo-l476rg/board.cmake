@@ -1,4 +1,4 @@
-# The chip of the board, and what QEMU has in its place: another board with a chip of this family, whose second serial line is USART2
+# The board's chip, and QEMU's substitute: another board with a chip of this family, whose second serial line is USART2
 # (boards/common/firmware.cmake).
 include(boards/stm32l4/stm32l4.cmake)
 set(board_machine b-l475e-iot01a)

@@ -1,5 +1,5 @@
-// How ST's Nucleo-L476RG wires its STM32L476, by UM1724 (boards/stm32l4/wiring.hpp says what each table is). Its Arduino header has
-// no D0 and D1: what would be there is the line to the ST-LINK.
+// How ST's Nucleo-L476RG wires its STM32L476, according to UM1724 (boards/stm32l4/wiring.hpp describes the tables). Its Arduino
+// header has no usable D0 and D1: their pins are the line to the ST-LINK.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@ namespace robosync::boards::stm32l4::wiring {
 
 inline constexpr const char* kName = "nucleo-l476rg";
 
-// 13 is also the green LED. 3 and 5 belong to the debugger until start(), and the chip pulls up 5: so the board's profile lets
-// that one have servo pulses only. 4, 9 and 11 have one channel, which is that of 11.
+// 13 is also the green LED. 3 and 5 belong to the debugger until start(). The chip pulls up 5 in that time, so the board's
+// profile allows only servo pulses on it. 4, 9 and 11 share one timer channel, which 11 uses.
 inline constexpr std::array<Output, 6> kOutputs{
     Output{3, kPortB, 3, 1, kTimer2, 1},  Output{5, kPortB, 4, 2, kTimer3, 0},
     Output{6, kPortB, 10, 1, kTimer2, 2}, Output{10, kPortB, 6, 2, kTimer4, 0},
@@ -20,7 +20,7 @@ inline constexpr Enable kEnable{45, kPortC, 0};  // A5
 
 inline constexpr std::array<Pin, 0> kHeldHigh{};
 
-// 32, which is on no header, is the blue button; the board pulls it up.
+// 32 is the blue button; it is on no header, and the board pulls it up.
 inline constexpr std::array<Input, 6> kInputs{Input{2, kPortA, 10}, Input{4, kPortB, 5},
                                               Input{7, kPortA, 8},  Input{9, kPortC, 7},
                                               Input{12, kPortA, 6}, Input{32, kPortC, 13}};

@@ -1,7 +1,7 @@
-// See analog.hpp. ST's RM0351, 18 (ADC): the order is that of 18.4.6 to 18.4.9.
+// See analog.hpp. ST's RM0351, 18 (ADC): the steps follow 18.4.6 to 18.4.9.
 //
-// A voltage takes 653 cycles of 40 MHz, 16 us: shorter than two switches between threads take, so it is waited for. The interrupts
-// of others come meanwhile.
+// A conversion takes 653 cycles of 40 MHz, 16 us: less than two thread switches take, so the thread polls. Interrupts are still
+// taken.
 #include "runtime-m4/boards/stm32l4/analog.hpp"
 
 #include "runtime-m4/boards/board.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const auto& kInputs = wiring::kAnalogInputs;
 
-// A look takes four cycles of the core's 80 MHz at least: 25 us, and 50 for the regulator, which wants 20.
+// One poll takes at least four cycles of the core's 80 MHz: 25 us in all, and 50 us for the regulator, which needs 20.
 constexpr unsigned kLooks = 500;
 constexpr unsigned kLooksOfRegulator = 1000;
 
@@ -31,7 +31,7 @@ void wait_for_regulator() {
     static_cast<void>(adc::kControl.read());
 }
 
-// Some cycles after the calibration it cannot be switched on yet: so it is told again and again.
+// For some cycles after the calibration the converter cannot be switched on, so the command is repeated.
 bool switch_on() {
   adc::kState.write(adc::kReady);
   for (unsigned i = 0; i < kLooks; ++i) {
@@ -41,7 +41,7 @@ bool switch_on() {
   return false;
 }
 
-// The first writing ends the deep power-down.
+// The first write to kControl ends the deep power-down.
 bool bring_up() {
   adc::kCommon.write(adc::kClockByTwo);
   adc::kControl.write(0);
@@ -69,7 +69,7 @@ void start() {
         .set_field(input.channel % adc::kSamplesARegister, adc::kSampleBits, adc::k640Cycles);
 }
 
-// One that has not ended, though it was told to stop, takes no other.
+// If an earlier conversion was told to stop and has not stopped, no new one is started.
 bool read(std::uint16_t pin, std::uint16_t& voltage) {
   const std::size_t i = find_input(kInputs, pin);
   if (i == kInputs.size() || !is_up || adc::kControl.has(adc::kStart)) return false;

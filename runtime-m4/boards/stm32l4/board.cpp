@@ -22,7 +22,7 @@ Board board;
 
 }  // namespace
 
-// Why the chip was reset is noted, and forgotten there: the next reset adds to it.
+// Reads the reset flags and clears them: they accumulate over resets.
 Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   rcc::kStatus.set(rcc::kForgetReset);
   if (!start_clock()) port::core::reset();
@@ -40,7 +40,7 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
     port::core::enable_interrupt(interrupt);
 }
 
-// A reset by the watchdog comes without warning, so nobody could note it in memory.
+// A watchdog reset comes without warning, so it could not be recorded in memory.
 link::ResetReason Board::reset_reason() const {
   return watchdog_reset_ ? ResetReason::watchdog : last_reset();
 }
@@ -50,7 +50,7 @@ bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const
   return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
 }
 
-// Of whom it is for, the transfer tells.
+// The address comes with the transfer.
 bool Board::i2c_select(std::uint8_t bus, std::uint8_t /*address*/,
                        std::span<const std::byte> page) {
   return bus < i2c_.size() && i2c_[bus].select(page);
@@ -101,8 +101,8 @@ void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
   if (line == kPlayerLine) player_.say(command);
 }
 
-// The watchdog has no interrupt: it resets the chip, and that lets all pins go. Its first period is longer, as
-// the chip takes over what is said here a few of its counts later.
+// The watchdog has no interrupt: it resets the chip, which releases all pins. Its first period is longer, because
+// the settings take effect a few of its counts later.
 void Board::watchdog_start() {
   iwdg::kKey.write(iwdg::kStart);
   iwdg::kKey.write(iwdg::kUnlock);
@@ -134,7 +134,7 @@ void Echo_Handler();
 void HeaderBus_Handler();
 void OwnBus_Handler();
 
-// The flash is damaged where it cannot be corrected: what runs is not what was written, unless that is in the store.
+// Uncorrectable damage of the flash. Unless it is in the store, the code that runs is not the code that was written.
 void NMI_Handler() {
   if (robosync::boards::stm32l4::Flash::forgive_damage()) return;
   robosync::boards::reset_after({});
@@ -160,7 +160,7 @@ void HeaderBus_Handler() {
   robosync::boards::stm32l4::board.i2c(0).on_interrupt();
 }
 
-// Of the last one: who has one bus has no vector for this.
+// For the last bus. A board with one bus has no vector for this.
 void OwnBus_Handler() {
   using robosync::boards::stm32l4::wiring::kBuses;
   robosync::boards::stm32l4::board.i2c(kBuses.size() - 1).on_interrupt();

@@ -1,4 +1,4 @@
-// A board with an STM32L475 or STM32L476 (Cortex-M4F, 80 MHz, 1 MB of flash, 96 + 32 KB of RAM), of which its wiring says the rest
+// A board with an STM32L475 or STM32L476 (Cortex-M4F, 80 MHz, 1 MB of flash, 96 + 32 KB of RAM). Its wiring defines the rest
 // (wiring.hpp).
 #pragma once
 
@@ -22,7 +22,7 @@ class Board final : public boards::Board {
 public:
   static constexpr std::uint32_t kWatchdogMs = 100;
 
-  // Starts the clock of the core.
+  // Starts the core's clock.
   Board();
 
   const char* name() const override { return wiring::kName; }
@@ -63,7 +63,7 @@ private:
     return {I2c(i2c_master(kBus))...};
   }
 
-  bool watchdog_reset_ = false;  // why the chip was reset
+  bool watchdog_reset_ = false;  // the watchdog reset the chip
   Line line_;
   Player player_;
   static_assert(ROBOSYNC_STORE_BYTES == flash::kBytesOfBank);

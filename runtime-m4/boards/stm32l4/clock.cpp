@@ -1,5 +1,5 @@
-// See clock.hpp. The 4 MHz are those of MSI, the oscillator inside the chip, which is right to about 1 %: near enough for the
-// serial line and for servos. So no crystal has to be there.
+// See clock.hpp. The 4 MHz come from MSI, the oscillator inside the chip. It is accurate to about 1 %, which is enough for the
+// serial line and for servos, so no crystal is needed.
 #include "runtime-m4/boards/stm32l4/clock.hpp"
 
 #include "runtime-m4/boards/stm32l4/registers.hpp"
@@ -18,7 +18,7 @@ bool becomes(Register status, std::uint32_t bits) {
 
 }  // namespace
 
-// The flash must wait before the core is faster, not after.
+// The flash's wait states must be set before the core becomes faster.
 bool start_clock() {
   flash::kAccess.write(flash::kFourWaits | flash::kPrefetchAndCaches);
   rcc::kPll.write(rcc::kPllOf80MHz);

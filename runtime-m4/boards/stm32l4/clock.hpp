@@ -1,10 +1,9 @@
-// The clock of the core.
+// The core's clock.
 #pragma once
 
 namespace robosync::boards::stm32l4 {
 
-// The chip comes out of reset with 4 MHz; from here on it has 80. False when the PLL does not come up, which is a
-// broken chip.
+// Switches from 4 MHz, the clock after reset, to 80 MHz. False when the PLL does not come up: the chip is broken.
 [[nodiscard]] bool start_clock();
 
 }  // namespace robosync::boards::stm32l4

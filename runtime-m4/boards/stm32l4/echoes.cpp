@@ -32,7 +32,7 @@ void start() {
   }
 }
 
-// What the pin did before is nobody's.
+// Edges from before the ping are discarded.
 void ping(std::uint16_t trigger, std::uint16_t echo) {
   const std::size_t i = find_input(kInputs, echo);
   if (i == kInputs.size()) return;
@@ -51,7 +51,7 @@ std::uint32_t take(std::uint16_t echo) {
   return echoes[i].take() / (kClockHz / 1'000'000);
 }
 
-// It is forgotten before the level is read: an edge that comes in between calls again.
+// Clears the pending bit before it reads the level: an edge in between interrupts again.
 void on_edge(std::uint32_t now) {
   const std::uint32_t pending = exti::kPending.read() & exti::kMask.read();
   for (std::size_t i = 0; i < kInputs.size(); ++i) {

@@ -1,6 +1,6 @@
 // See flash.hpp. ST's RM0351, 3.3.5 to 3.3.8; DS10969: a page is erased in 25 ms at most, two words are written in 91 us.
-// ES0250: while one bank is written, the data cache may take something wrong from the other one. So it is off then, and
-// begins anew.
+// ES0250: while one bank is written, the data cache may load wrong data from the other one. So it is off during that time, and
+// emptied afterwards.
 #include "runtime-m4/boards/stm32l4/flash.hpp"
 
 #include "runtime-m4/boards/stm32l4/registers.hpp"
@@ -9,7 +9,7 @@ namespace robosync::boards::stm32l4 {
 
 namespace {
 
-// A millisecond each, or as little as a byte of the line takes either way, 43 us: longer than a page takes.
+// A call comes every millisecond or, with bytes on the line in both directions, every 43 us: in all, longer than a page takes.
 constexpr unsigned kMostCalls = 1000;
 constexpr unsigned kMostLooks = 100'000;  // more than 5 ms at 80 MHz
 
@@ -42,18 +42,18 @@ Erasing Flash::erase(std::uint32_t page, unsigned call) {
   const std::uint32_t which =
       flash::kErasePage | flash::page_of_bank_2((page - flash::kBank2) / kPage);
   if (flash::kControl.read() ==
-      which) {  // this page, and not another one that somebody has given up
+      which) {  // this page, not an erase of another page that was given up
     end();
     return Erasing::done;
   }
   begin(which);
   flash::kControl.write(which | flash::kStart);
   if ((flash::kControl.read() & ~flash::kStart) == which) return Erasing::goes_on;
-  end();  // it does not do what it is told, as in an emulator, or where it is locked until the next reset
+  end();  // the command has no effect: in an emulator, or if the flash is locked until the next reset
   return Erasing::failed;
 }
 
-// Waits for at most as long as two words take: by the thread of the lowest rank.
+// Waits while two words are written, in the thread of the lowest rank.
 void Flash::program(std::uint32_t at, std::span<const std::uint32_t, kUnit> words) {
   begin(flash::kProgram);
   {

@@ -1,5 +1,5 @@
-// The second bank of the chip's flash, for boards/common/flash_store.hpp. It is erased and written while the core goes on with what
-// stands in the first one.
+// The second bank of the chip's flash, for boards/common/flash_store.hpp. The core keeps running from the first bank while the
+// second is erased and written.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace robosync::boards::stm32l4 {
 
 struct Flash {
   static constexpr std::uint32_t kPage = 2048;
-  static constexpr std::size_t kUnit = 2;  // what stands under one checksum of the flash
+  static constexpr std::size_t kUnit = 2;  // words under one checksum (ECC) of the flash
   static constexpr bool kStalls = false;
 
   static Erasing erase(std::uint32_t page, unsigned call);
   static bool is_busy();
   static void program(std::uint32_t at, std::span<const std::uint32_t, kUnit> words);
 
-  // A cut of the power may leave two words whose checksum is wrong, or nearly none, and who reads them gets any bits, and
-  // an NMI. True when that was so in the second bank: what is read there has checksums of its own, and says whether
-  // it is whole.  [NMI]
+  // A power cut may leave two words with a wrong or undefined checksum. Reading them returns arbitrary bits and raises an
+  // NMI. True if that happened in the second bank: the data there has its own checksums, which detect the
+  // damage.  [NMI]
   static bool forgive_damage();
 };
 

@@ -1,18 +1,18 @@
-// See i2c.hpp. ST's RM0351, 39.4 (I2C) and 11 (DMA): the order of a transfer is that of 39.4.8 and 39.4.16.
+// See i2c.hpp. ST's RM0351, 39.4 (I2C) and 11 (DMA): a transfer follows the steps of 39.4.8 and 39.4.16.
 #include "runtime-m4/boards/stm32l4/i2c.hpp"
 
 namespace robosync::boards::stm32l4 {
 
 namespace {
 
-constexpr unsigned kHalfBit = 30;  // turns of a loop of four cycles: 1.5 us
+constexpr unsigned kHalfBit = 30;  // iterations of a loop of four cycles: 1.5 us
 
 void set_up(const DmaChannel& channel, Register data) {
   kDmaSelect.set_field(channel.number - 1, 4, kDmaForI2c);
   channel.peripheral().write(static_cast<std::uint32_t>(data.address));
 }
 
-// Without a frame of its own: a sensor's thread has no stack to spare for one.
+// Inlined, because a sensor's thread has no stack to spare for another frame.
 [[gnu::always_inline]] inline void move(const DmaChannel& channel, std::uint32_t memory,
                                         std::size_t bytes, std::uint32_t direction) {
   kDmaForget.write(0xFU << 4 * (channel.number - 1));
@@ -23,7 +23,7 @@ void set_up(const DmaChannel& channel, Register data) {
 
 }  // namespace
 
-// The lines last: a master that has not begun leaves them alone.
+// The lines come last: an idle master does not drive them.
 void I2cMaster::start() const {
   rcc::give_clock(rcc::kAhb1, rcc::kDma1);
   rcc::give_clock(rcc::kApb1, wires_.master.clock);
@@ -53,8 +53,8 @@ void I2cMaster::begin(std::uint8_t address, std::span<const std::byte> out,
                                  (in.empty() ? I2cRegisters::kStopBehind : 0));
 }
 
-// Who was refused stops by himself, and has a byte left that must not be the first one of the next transfer. Who was
-// outvoted has nothing to stop. ES0250: of a master, a bus error says nothing.
+// After a NACK the master sends the stop on its own, but still holds a byte, which must not become the first one of the next
+// transfer. After lost arbitration there is nothing to stop. ES0250: a bus error means nothing for a master.
 Transfer I2cMaster::on_interrupt() {
   const std::uint32_t state = wires_.master.state().read();
   wires_.master.forget().write(
@@ -74,7 +74,7 @@ Transfer I2cMaster::on_interrupt() {
   return whole ? Transfer::done : Transfer::failed;
 }
 
-// Off for three cycles of the bus at least, which the reading takes: what it was about is forgotten then, and its lines are free.
+// The master must be off for at least three bus clock cycles, which the read takes. That aborts the transfer and frees the lines.
 void I2cMaster::switch_off() const {
   wires_.to_send.control().write(0);
   wires_.to_memory.control().write(0);

@@ -1,5 +1,5 @@
-// An I2C bus by one of the chip's masters and two channels of DMA1, at 390 kHz at most. A data line that is held down gets its clocks in
-// 30 us.
+// An I2C bus on one of the chip's masters and two channels of DMA1, at 390 kHz at most. A data line that is held low gets its
+// clocks within 30 us.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class I2cMaster {  // for AskedBus
 public:
   constexpr explicit I2cMaster(const Bus& wires) : wires_(wires) {}
 
-  // Its port has its clock.
+  // The port must have its clock.
   void start() const;
   void begin(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in);
   Transfer on_interrupt();
@@ -32,8 +32,8 @@ private:
   void switch_off() const;
 
   Bus wires_;
-  std::uint32_t reading_ = 0;  // what the master is told when all is written; 0: nothing is read
-  bool wrong_ = false;         // the transfer that runs
+  std::uint32_t reading_ = 0;  // command for the master after the write; 0: nothing is read
+  bool wrong_ = false;         // the running transfer has failed
 };
 using I2c = AskedBus<I2cMaster>;
 

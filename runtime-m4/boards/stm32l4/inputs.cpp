@@ -7,7 +7,7 @@ namespace robosync::boards::stm32l4::inputs {
 
 using wiring::kInputs;
 
-// The pull first: out of reset most pins are analog, or belong to the debugger.
+// The pull-up comes first: after reset most pins are analog, or belong to the debugger.
 void start() {
   for (const Input& input : kInputs) {
     input.port.pulls().set_field(input.bit, 2, kPullUp);

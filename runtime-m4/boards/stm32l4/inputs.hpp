@@ -1,6 +1,6 @@
 // The pins that programs may read (wiring::kInputs).
 //
-// They are inputs from start() on and never anything else, and pulled up: a pin that nothing is wired to reads high.
+// From start() on they are inputs and never anything else. They are pulled up: an unconnected pin reads high.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace robosync::boards::stm32l4::inputs {
 
-// Their ports have their clock.
+// Their ports must have their clocks.
 void start();
 inline bool is_high(const Input& input) {
   return input.port.levels().has(1U << input.bit);
 }
-// A pin that is no input: false.
+// False if the pin is not an input.
 bool is_high(std::uint16_t pin);
 
 }  // namespace robosync::boards::stm32l4::inputs

@@ -1,4 +1,4 @@
-// The interrupts of the chip that the firmware uses as the board is wired, for boards/common/vectors.cpp.
+// The chip's interrupts that the firmware uses with this board's wiring, for boards/common/vectors.cpp.
 #pragma once
 
 #include "runtime-m4/boards/common/vectors.hpp"

@@ -1,4 +1,4 @@
-// See panel.hpp. ST's RM0351, 42 (SPI) and 11 (DMA): a channel of DMA fetches a picture from memory, and nobody is interrupted.
+// See panel.hpp. ST's RM0351, 42 (SPI) and 11 (DMA): a DMA channel fetches the picture from memory, without any interrupt.
 #include "runtime-m4/boards/stm32l4/panel.hpp"
 
 #include "runtime-m4/boards/common/panel_signal.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 struct Spi1 {  // for PanelSignal
   static constexpr std::uint32_t kHz = spi::kHz;
-  // 0.4 us high of 1.2, or 0.8.
+  // A zero is high for 0.4 us of 1.2 us, a one for 0.8 us.
   static constexpr unsigned kBitsOfBit = 3;
   static constexpr std::uint64_t kZero = 0b100;
   static constexpr std::uint64_t kOne = 0b110;
@@ -21,7 +21,7 @@ struct Spi1 {  // for PanelSignal
     spi::kControl.write(0);
   }
 
-  // The SPI has two bytes or three of what is given up, and sends them first.
+  // The SPI still holds two or three bytes of a dropped picture, and sends them first.
   static void send(std::uint16_t pin, std::span<const std::byte> bytes) {
     if (pin != wiring::kPanel.pin) return;
     rcc::give_clock(rcc::kAhb1, rcc::kDma1);

@@ -1,4 +1,4 @@
-// A panel of WS2812 lights on a pin that SPI1 has while there is one (wiring::kPanel).
+// A panel of WS2812 lights. While a program has one, its pin belongs to SPI1 (wiring::kPanel).
 #pragma once
 
 #include "runtime-m4/boards/panel_output.hpp"

@@ -35,17 +35,17 @@ void start(const Timer& timer) {
     timer.mode(channel).set_field(channel % 2, 8, Timer::kPulseFromNextPeriod);
     timer.enable().set_field(channel, 4, Timer::kOutput);
   }
-  timer.event().write(Timer::kUpdate);  // it takes over what it has been told
+  timer.event().write(Timer::kUpdate);  // loads the settings into the timer
   timer.control().write(Timer::kOn);
 }
 
-// One channel at a time: what the others will give stays as it is.
+// Affects one channel: the others keep the pulses that they are set to.
 void low_at_once(const Timer& timer, unsigned channel) {
   timer.mode(channel).set_field(channel % 2, 8, Timer::kPulse);
   timer.compare(channel).write(0);
 }
 
-// High before it is an output.
+// Sets the level before the pin becomes an output.
 void hold_high(const Pin& pin) {
   pin.port.change().write(1U << pin.bit);
   pin.port.pulls().set_field(pin.bit, 2, 0);
@@ -54,7 +54,7 @@ void hold_high(const Pin& pin) {
 
 }  // namespace
 
-// What a pin is to be first: when the timers get theirs, these are low.
+// The timers are started first: when the pins switch to them, they are low.
 void start() {
   hold_high({kEnable.port, kEnable.bit});
   for (const Pin& pin : wiring::kHeldHigh)
@@ -78,8 +78,8 @@ void write(std::uint16_t pin, std::uint32_t pulse_us) {
   timer.compare(output->channel).write(pulse_us);
 }
 
-// High until the count is there; what waits for the next period is 0. Where the end of the period would cut it off, the
-// period ends now: what the timer's other pins give is some microseconds early, once.
+// The pin is high until the count reaches `compare`; the value for the next period is 0. If the period would end during the
+// pulse, it ends now: the timer's other pins then give one pulse a few microseconds early.
 void pulse(std::uint16_t pin) {
   const Output* const output = find(pin);
   if (output == nullptr) return;

@@ -1,36 +1,36 @@
-// The pins that give pulses (wiring::kOutputs), by the timers 2 to 5. A frame is 20 ms.
+// The pins for pulses (wiring::kOutputs), driven by timers 2 to 5. A frame is 20 ms.
 //
-// From reset until start() they are not driven. One that belongs to the debugger may be pulled up then, by the chip: so a board's
-// profile lets that one have servo pulses only.
+// From reset until start() they are not driven. In that time the chip may pull up a debugger pin, so a board's profile allows
+// only servo pulses on it.
 //
-// One pin is for the enable input of a chip on the bus, and nothing else (wiring::kEnable). Others, which no program knows, are high
-// from the start on, and stay so, whatever is switched off (wiring::kHeldHigh).
+// One pin drives the enable input of a chip on the bus, and nothing else (wiring::kEnable). Others, which programs cannot use,
+// are high from start() on and stay high, whatever is switched off (wiring::kHeldHigh).
 #pragma once
 
 #include <cstdint>
 
 namespace robosync::boards::stm32l4::pins {
 
-// All pins low, but those that are held high, and the one at an enable input (boards::Board::enable()), which is high. Their ports
-// have their clock.
+// Sets all pins low, except those that are held high and the one at an enable input (boards::Board::enable()), which is high.
+// Their ports must have their clocks.
 void start();
 
-// The pulse in microseconds, from the next frame on: no frame has part of one. 0 is off, at once. A pin that gives no
-// pulses is left alone. [under a lock: pins of a timer share its registers]
+// The pulse in microseconds, from the next frame on: no frame contains part of a pulse. 0 switches off immediately. No effect
+// on pins that are not for pulses. [under a lock: pins of a timer share its registers]
 void write(std::uint16_t pin, std::uint32_t pulse_us);
 std::uint32_t read(std::uint16_t pin);
 
-// One pulse of 11 or 12 us, from now on; the timer ends it. [under a lock, as above]
+// One pulse of 11 or 12 us, starting now; the timer ends it. [under a lock, as above]
 void pulse(std::uint16_t pin);
 
-// The pin has this function of its port until it is taken back, when its timer has it again. It gives no pulses.
+// Gives the pin another function of its port, until take_back() returns it to its timer. It must give no pulses.
 void hand_over(std::uint16_t pin, std::uint32_t function);
 void take_back(std::uint16_t pin);
 
-// The pin at an enable input is low from now on, or high. Another one is left alone.
+// Sets the pin at an enable input low (on) or high (off). No effect on other pins.
 void enable(std::uint16_t pin, bool on);
 
-// All of them, at once. Any state of the machine.
+// All pins, immediately. [any processor state]
 void switch_off();
 
 }  // namespace robosync::boards::stm32l4::pins

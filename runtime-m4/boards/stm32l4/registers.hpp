@@ -1,5 +1,5 @@
-// The peripherals of the STM32L475 and the STM32L476 that the firmware uses. Facts of ST's RM0351 (the registers of both), DS10969
-// and DS10198 (their pins and interrupts).
+// The peripherals of the STM32L475 and the STM32L476 that the firmware uses. Sources: ST's RM0351 (the registers of both),
+// DS10969 and DS10198 (their pins and interrupts).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline constexpr Register kConfiguration{0x4002'1008};
 inline constexpr std::uint32_t kSwitchToPll = 0b11;
 inline constexpr std::uint32_t kRunsOnPll = 0b11 << 2;
 inline constexpr Register kPll{0x4002'100C};
-// From MSI, which comes out of reset with 4 MHz: times 40, and half of that comes out.
+// From MSI, which has 4 MHz after reset: times 40, divided by 2.
 inline constexpr std::uint32_t kPllOf80MHz = 0b01U | 40U << 8 | 1U << 24;
 inline constexpr Register kAhb1{0x4002'1048};
 inline constexpr std::uint32_t kDma1 = 1U << 0;
@@ -43,7 +43,7 @@ inline constexpr Register kStatus{0x4002'1094};
 inline constexpr std::uint32_t kWatchdogReset = 1U << 29;
 inline constexpr std::uint32_t kForgetReset = 1U << 23;
 
-// A peripheral hears nothing in the first cycles of its clock: the reading lets them pass.
+// A peripheral ignores accesses in the first cycles of its clock: the read waits for them.
 inline void give_clock(Register clocks, std::uint32_t peripherals) {
   clocks.set(peripherals);
   static_cast<void>(clocks.read());
@@ -61,7 +61,7 @@ inline constexpr std::uint32_t kFirstKey = 0x4567'0123;
 inline constexpr std::uint32_t kSecondKey = 0xCDEF'89AB;
 inline constexpr Register kStatus{0x4002'2010};
 inline constexpr std::uint32_t kBusy = 1U << 16;
-inline constexpr std::uint32_t kErrors = 0xC3FA;  // 1 forgets; nothing is written before that
+inline constexpr std::uint32_t kErrors = 0xC3FA;  // write 1 to clear; set bits block programming
 inline constexpr Register kControl{0x4002'2014};
 inline constexpr std::uint32_t kProgram = 1U << 0;
 inline constexpr std::uint32_t kErasePage = 1U << 1;
@@ -72,17 +72,15 @@ inline constexpr std::uint32_t kStart = 1U << 16;
 inline constexpr std::uint32_t kLock = 1U << 31;
 inline constexpr Register kDamage{0x4002'2018};
 inline constexpr std::uint32_t kInBank2 = 1U << 19;
-inline constexpr std::uint32_t kDamaged = 1U << 31;   // more than can be corrected: NMI; 1 forgets
-inline constexpr std::uint32_t kBank2 = 0x0808'0000;  // the firmware is in the other one
+inline constexpr std::uint32_t kDamaged = 1U << 31;   // uncorrectable: NMI; write 1 to clear
+inline constexpr std::uint32_t kBank2 = 0x0808'0000;  // the firmware is in bank 1
 inline constexpr std::uint32_t kBytesOfBank = 512 * 1024;
 }  // namespace flash
 
 struct Port {  // of pins
   std::uintptr_t base;
-  constexpr Register mode() const { return {base}; }  // 2 bits a pin
-  constexpr Register open() const {
-    return {base + 0x04};
-  }  // a bit a pin: as an output it is low, or nobody drives it
+  constexpr Register mode() const { return {base}; }         // 2 bits a pin
+  constexpr Register open() const { return {base + 0x04}; }  // a bit a pin: open drain
   constexpr Register pulls() const { return {base + 0x0C}; }
   constexpr Register levels() const { return {base + 0x10}; }
   constexpr Register change() const { return {base + 0x18}; }  // 1 << pin: high; 1 << 16 + pin: low
@@ -92,7 +90,7 @@ struct Port {  // of pins
   }
   constexpr Register analog() const {
     return {base + 0x2C};
-  }  // a bit a pin: the converters have it
+  }  // a bit a pin: connected to the converters
 };
 inline constexpr Port kPortA{0x4800'0000};
 inline constexpr Port kPortB{0x4800'0400};
@@ -107,7 +105,7 @@ inline constexpr std::uint32_t kModeOfOutput = 0b01;
 inline constexpr std::uint32_t kModeOfFunction = 0b10;
 inline constexpr std::uint32_t kPullUp = 0b01;
 
-// A timer of the general ones, 2 to 5, with four channels.
+// A general-purpose timer, 2 to 5, with four channels.
 struct Timer {
   std::uintptr_t base;
   constexpr Register control() const { return {base}; }
@@ -119,19 +117,19 @@ struct Timer {
   constexpr Register enable() const { return {base + 0x20}; }  // 4 bits a channel
   constexpr Register count() const { return {base + 0x24}; }
   constexpr Register prescaler() const { return {base + 0x28}; }
-  constexpr Register last() const { return {base + 0x2C}; }  // count of a period
+  constexpr Register last() const { return {base + 0x2C}; }  // last count of a period
   constexpr Register compare(unsigned channel) const {
     return {base + 0x34 + std::uintptr_t{4} * channel};
   }
 
   static constexpr unsigned kChannels = 4;  // numbered from 0; ST numbers them from 1
   static constexpr std::uint32_t kOn =
-      1U << 0 | 1U << 7;  // and a new `last` waits for the next period
+      1U << 0 | 1U << 7;  // and a new `last` takes effect with the next period
   static constexpr std::uint32_t kUpdate = 1U << 0;
   static constexpr std::uint32_t kOutput = 1U << 0;
   // High while the count is below `compare`.
   static constexpr std::uint32_t kPulse = 0b110U << 4;
-  // … and a new `compare` waits for the next period.
+  // The same, and a new `compare` takes effect with the next period.
   static constexpr std::uint32_t kPulseFromNextPeriod = kPulse | 1U << 3;
 };
 inline constexpr Timer kTimer2{0x4000'0000};
@@ -139,18 +137,18 @@ inline constexpr Timer kTimer3{0x4000'0400};
 inline constexpr Timer kTimer4{0x4000'0800};
 inline constexpr Timer kTimer5{0x4000'0C00};
 
-namespace adc {                                 // ADC1, and what it has in common with ADC2
-inline constexpr Register kState{0x5004'0000};  // 1 forgets
+namespace adc {                                 // ADC1, and registers it shares with ADC2
+inline constexpr Register kState{0x5004'0000};  // write 1 to clear
 inline constexpr std::uint32_t kReady = 1U << 0;
-inline constexpr std::uint32_t kEnded = 1U << 2;  // the reading of kData forgets it, too
-inline constexpr Register kControl{0x5004'0008};  // comes out of reset in deep power-down
+inline constexpr std::uint32_t kEnded = 1U << 2;  // reading kData clears it, too
+inline constexpr Register kControl{0x5004'0008};  // in deep power-down after reset
 inline constexpr std::uint32_t kOn = 1U << 0;
 inline constexpr std::uint32_t kStart = 1U << 2;
 inline constexpr std::uint32_t kStop = 1U << 4;
 inline constexpr std::uint32_t kRegulator = 1U << 28;
 inline constexpr std::uint32_t kCalibrate = 1U << 31;
 inline constexpr Register kConfiguration{0x5004'000C};
-// 12 bits; a value that nobody took gives way to the next one; bit 31 is as it comes out of reset.
+// 12 bits; a new value overwrites one that was not read; bit 31 has its reset value.
 inline constexpr std::uint32_t kNewestOf12Bits = 1U << 12 | 1U << 31;
 inline constexpr unsigned kSampleBits = 3;
 inline constexpr unsigned kSamplesARegister = 10;
@@ -169,7 +167,7 @@ inline constexpr std::uint32_t kClockByTwo = 1U << 18;
 
 struct DmaChannel {  // of DMA1
   unsigned number;   // from 1
-  // Inlined, so that beginning a transfer is no call deep: a sensor's thread has no stack to spare for one.
+  // Inlined, because a sensor's thread has no stack to spare for a call when it begins a transfer.
   [[gnu::always_inline]] constexpr Register at(std::uintptr_t offset) const {
     return {0x4002'0008 + std::uintptr_t{20} * (number - 1) + offset};
   }
@@ -183,13 +181,13 @@ struct DmaChannel {  // of DMA1
   static constexpr std::uint32_t kBytesToMemory = 1U << 7;
 };
 inline constexpr Register kDmaForget{
-    0x4002'0004};  // 4 bits a channel: who has failed does nothing before
-inline constexpr Register kDmaSelect{0x4002'00A8};  // 4 bits a channel, the first one's at the end
+    0x4002'0004};  // 4 bits a channel: a channel that failed stays off until they are cleared
+inline constexpr Register kDmaSelect{0x4002'00A8};  // 4 bits a channel; channel 1 has the lowest
 inline constexpr std::uint32_t kDmaForI2c = 3;
 
 struct I2cRegisters {
   std::uintptr_t base;
-  unsigned event_interrupt;  // that of errors is the next one
+  unsigned event_interrupt;  // the error interrupt is the next one
   std::uint32_t clock;       // of rcc::kApb1
   constexpr Register control() const { return {base}; }
   constexpr Register transfer() const { return {base + 0x04}; }
@@ -199,7 +197,7 @@ struct I2cRegisters {
   constexpr Register received() const { return {base + 0x24}; }
   constexpr Register send() const { return {base + 0x28}; }
 
-  // Refusal, stop, what was written, and errors interrupt; bytes come and go by DMA.
+  // NACK, stop, end of the write, and errors interrupt; DMA moves the bytes.
   static constexpr std::uint32_t kOn = 1U << 0 | 0b1111U << 4 | 1U << 14 | 1U << 15;
   static constexpr std::uint32_t kRead = 1U << 10;
   static constexpr std::uint32_t kStart = 1U << 13;
@@ -207,8 +205,8 @@ struct I2cRegisters {
   static constexpr std::uint32_t to(std::uint32_t address, std::size_t bytes) {
     return address << 1 | static_cast<std::uint32_t>(bytes) << 16;
   }
-  // Of 80 MHz by two: low for 60, high for 36, which with what the master takes to see the clock is 390 kHz at most; data
-  // 225 ns behind the clock's edge, and 400 before the next one.
+  // In counts of 80 MHz / 2: low for 60, high for 36. With the master's delay in sampling the clock, that is 390 kHz at most;
+  // data changes 225 ns after the clock's edge, and is stable 400 ns before the next one.
   static constexpr std::uint32_t kAlmost400kHz = 1U << 28 | 15U << 20 | 9U << 16 | 35U << 8 | 59U;
   static constexpr std::uint32_t kRefused = 1U << 4;
   static constexpr std::uint32_t kStopped = 1U << 5;
@@ -221,15 +219,15 @@ inline constexpr std::uint32_t kFunctionOfI2c = 4;
 inline constexpr I2cRegisters kI2c1{0x4000'5400, 31, rcc::kI2c1};
 inline constexpr I2cRegisters kI2c2{0x4000'5800, 33, rcc::kI2c2};
 
-namespace exti {  // interrupts at edges of pins: a line for each number of a pin, which one port has
+namespace exti {  // edge interrupts: a line for each pin number, connected to one port
 inline constexpr Register port(unsigned line) {  // 4 bits a line
   return {0x4001'0008 + std::uintptr_t{4} * (line / 4)};
 }
 inline constexpr Register kMask{0x4001'0400};  // 1: it interrupts
 inline constexpr Register kRising{0x4001'0408};
 inline constexpr Register kFalling{0x4001'040C};
-inline constexpr Register kPending{0x4001'0414};  // 1 forgets
-// Of the lines 2 and 4, 5 to 9, and 10 to 15.
+inline constexpr Register kPending{0x4001'0414};  // write 1 to clear
+// For lines 2 and 4, 5 to 9, and 10 to 15.
 inline constexpr unsigned kInterrupt2 = 8;
 inline constexpr unsigned kInterrupt4 = 10;
 inline constexpr unsigned kInterrupt5To9 = 23;
@@ -239,8 +237,8 @@ inline constexpr unsigned kInterrupt10To15 = 40;
 struct Usart {
   std::uintptr_t base;
   unsigned interrupt;
-  Register clocks;      // of rcc
-  std::uint32_t clock;  // … in which it has this one
+  Register clocks;      // in rcc
+  std::uint32_t clock;  // its bit in `clocks`
 
   constexpr Register control() const { return {base}; }
   constexpr Register control3() const { return {base + 0x08}; }
@@ -251,9 +249,9 @@ struct Usart {
 
   static constexpr std::uint32_t kSendsOnly = 1U << 0 | 1U << 3;
   static constexpr std::uint32_t kOn =
-      kSendsOnly | 1U << 2 | 1U << 5;  // a byte that comes interrupts
+      kSendsOnly | 1U << 2 | 1U << 5;  // a received byte interrupts
   static constexpr std::uint32_t kInterruptWhenEmpty = 1U << 7;
-  // A byte that comes too early takes the place of the one before, and nothing has to be cleared.
+  // A byte that comes too early overwrites the one before, and no error flag has to be cleared.
   static constexpr std::uint32_t kNoOverrun = 1U << 12;
   static constexpr std::uint32_t kReceived = 1U << 5;
   static constexpr std::uint32_t kEmpty = 1U << 7;
@@ -265,10 +263,10 @@ inline constexpr Usart kUsart1{0x4001'3800, 37, rcc::kApb2, rcc::kUsart1};
 inline constexpr Usart kUsart2{0x4000'4400, 38, rcc::kApb1, rcc::kUsart2};
 inline constexpr Usart kUart4{0x4000'4C00, 52, rcc::kApb1, rcc::kUart4};
 
-namespace spi {  // SPI1, whose data go to a panel of lights; it has no clock pin, and hears nothing
+namespace spi {  // SPI1, for a panel of lights; it has no clock pin, and receives nothing
 inline constexpr Register kControl{0x4001'3000};
 inline constexpr std::uint32_t kHz = kClockHz / 32;
-// One way, out; master, whatever its select pin says; on.
+// Transmit only; master, with the select pin ignored; enabled.
 inline constexpr std::uint32_t kSendsAt2500kHz =
     0b11U << 14 | 0b11U << 8 | 1U << 6 | 0b100U << 3 | 1U << 2;
 inline constexpr Register kControl2{0x4001'3004};
@@ -278,11 +276,11 @@ inline constexpr DmaChannel kDma{3};
 inline constexpr std::uint32_t kDmaForSpi = 1;
 }  // namespace spi
 
-namespace iwdg {  // the independent watchdog, on an oscillator of its own of 32 kHz
+namespace iwdg {  // the independent watchdog, on its own 32 kHz oscillator
 inline constexpr Register kKey{0x4000'3000};
 inline constexpr std::uint32_t kStart = 0xCCCC;
 inline constexpr std::uint32_t kUnlock = 0x5555;
-inline constexpr std::uint32_t kKick = 0xAAAA;  // locks, too
+inline constexpr std::uint32_t kKick = 0xAAAA;  // also locks
 inline constexpr Register kPrescaler{0x4000'3004};
 inline constexpr std::uint32_t kByFour = 0;
 inline constexpr Register kReload{0x4000'3008};

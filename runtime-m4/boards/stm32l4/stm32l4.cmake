@@ -1,4 +1,5 @@
-# What all boards with this chip share: their board.cmake includes it, and beside that they have a wiring.hpp (boards/common/firmware.cmake).
+# Settings of all boards with this chip: their board.cmake includes this, and each board has its own wiring.hpp
+# (boards/common/firmware.cmake).
 set(board_folder stm32l4)
 set(board_sources board.cpp analog.cpp clock.cpp echoes.cpp flash.cpp i2c.cpp inputs.cpp panel.cpp pins.cpp)
 set(board_script stm32l47x.ld)

@@ -1,4 +1,4 @@
-// The link's serial line, by the USART that the board makes a serial port of USB, and the one to a sound player, by another.
+// The link's serial line, on the USART that the board connects to USB as a serial port, and the sound player's, on another USART.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ struct Transmitter {
     kUsart.transmit().write(std::to_integer<std::uint32_t>(byte));
   }
 
-  // It interrupts as long as its register is empty, unless it is told that nothing comes. When the handler does that
-  // between the reading and the writing here, it is called once in vain.
+  // The USART interrupts while its register is empty, unless nothing_to_send() has been called. If the handler calls that
+  // between the read and the write in set(), it runs once more without cause.
   static void begin_to_send() { kUsart.control().set(Usart::kInterruptWhenEmpty); }
   static void nothing_to_send() { kUsart.control().clear(Usart::kInterruptWhenEmpty); }
   static bool wants_to_send() { return kUsart.control().has(Usart::kInterruptWhenEmpty); }
@@ -35,7 +35,7 @@ struct LinkUsart : Transmitter<wiring::kLink> {  // for SerialLine
   static void start() {
     rcc::give_clock(kUsart.clocks, kUsart.clock);
     for (const unsigned pin : {wiring::kLink.transmit, wiring::kLink.receive}) {
-      wiring::kLink.port.pulls().set_field(pin, 2, kPullUp);  // a line that nobody drives is silent
+      wiring::kLink.port.pulls().set_field(pin, 2, kPullUp);  // an undriven line stays silent
       take_pin(pin);
     }
     kUsart.baud_divider().write(Usart::divider_of(kBaud));

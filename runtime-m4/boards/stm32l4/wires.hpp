@@ -1,7 +1,7 @@
-// The kinds of wires between the chip and a board's header and parts, of which boards/NAME/wiring.hpp makes its tables.
+// The kinds of wires between the chip and a board's header and parts. boards/NAME/wiring.hpp builds its tables from them.
 //
-// Pins of the board are numbered as printed at its header (3 is D3); what is not printed there as a number has the one that
-// the board's profile gives it.
+// A board's pins have the numbers printed on its header (3 is D3). Pins without a printed number get one from the board's
+// profile.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace robosync::boards::stm32l4 {
 
-struct Pin {  // of the chip
+struct Pin {  // on the chip
   Port port;
   unsigned bit;
 };
 
-struct Output {  // gives pulses, by a timer's channel, which no other one has
+struct Output {  // for pulses; each has its own timer channel
   std::uint16_t pin;
   Port port;
   unsigned bit;
@@ -27,7 +27,7 @@ struct Output {  // gives pulses, by a timer's channel, which no other one has
 struct Input {
   std::uint16_t pin;
   Port port;
-  unsigned bit;  // no two have the same
+  unsigned bit;  // different for each input
 };
 
 struct AnalogInput {
@@ -37,7 +37,7 @@ struct AnalogInput {
   unsigned channel;  // of ADC1
 };
 
-struct Enable {  // of a chip on the bus
+struct Enable {  // the enable input of a chip on the bus
   std::uint16_t pin;
   Port port;
   unsigned bit;
@@ -46,15 +46,15 @@ struct Enable {  // of a chip on the bus
 struct Bus {
   I2cRegisters master;
   unsigned clock, data;           // pins of kPortOfI2c
-  DmaChannel to_send, to_memory;  // that hear this master
+  DmaChannel to_send, to_memory;  // connected to this master
 };
 
 struct SerialPins {
   Usart usart;
   Port port;
-  std::uint32_t function;  // which the pins have for it
+  std::uint32_t function;  // of the port, for both pins
   unsigned transmit;
-  unsigned receive = 0;  // who only sends has none
+  unsigned receive = 0;  // unused if the line only sends
 };
 
 struct PanelPin {  // of SPI1

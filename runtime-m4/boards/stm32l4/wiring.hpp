@@ -1,17 +1,17 @@
-// How the board of this firmware wires the chip: boards/NAME/wiring.hpp, which says in stm32l4::wiring
+// How this firmware's board wires the chip: boards/NAME/wiring.hpp. It defines in stm32l4::wiring
 //
-//   kName            of the board
-//   kOutputs         pins that give pulses, by the timers 2 to 5
-//   kEnable          the one for the enable input of a chip
-//   kHeldHigh        pins of the chip that are high from the start on, and stay so
-//   kInputs          pins that are read, and whose edges end an echo; kEchoInterrupts: those of all their lines
-//   kAnalogInputs    of ADC1
-//   kBuses           I2C, at least one, two at most
-//   kLink            the serial line that the board makes a serial port of USB
-//   kPlayer          the one to a sound player: its transmitter alone
-//   kPanel           where SPI1's data go to a panel of lights; one of kOutputs
+//   kName            the board's name
+//   kOutputs         pins for pulses, driven by timers 2 to 5
+//   kEnable          the pin for the enable input of a chip
+//   kHeldHigh        pins of the chip that are high from start() on, and stay high
+//   kInputs          pins that are read, and whose edges end an echo; kEchoInterrupts: the interrupts of all their lines
+//   kAnalogInputs    inputs of ADC1
+//   kBuses           I2C buses, at least one, at most two
+//   kLink            the serial line that the board connects to USB as a serial port
+//   kPlayer          the serial line to a sound player: only its transmitter
+//   kPanel           SPI1's data pin, for a panel of lights; one of kOutputs
 //
-// Tables say how long they are: those whose length std::array finds out by itself, GCC 12 puts in RAM.
+// Tables state their length: GCC 12 puts those whose length std::array deduces in RAM.
 #pragma once
 
 #include ROBOSYNC_BOARD_WIRING

@@ -171,6 +171,8 @@ TEST_CASE("modifiers are told in words a teacher understands") {
   CHECK_THAT(text, Contains("If it becomes true again while this is still going on, it starts "
                             "again from the top."));
   CHECK_THAT(text, Contains("it waits for that, but at most 2s."));
+  CHECK_THAT(told("WHEN a > 60C COOLDOWN 10s DO\n  SHOW face\nELSE\n  SHOW face\nEND"),
+             Contains("After a side has started, that side does not start again for 10s."));
   const std::string plain = told("WHEN a > 60C DO\n  SHOW face\nEND");
   CHECK_THAT(plain, !Contains("After it has started") && !Contains("starts again from the top"));
 }

@@ -189,7 +189,7 @@ TEST_CASE("a fix is offered where the mistake is, and what is certain is preferr
   editor.open("robot.rsl", kWrong);
   const Json offered = actions(editor, "robot.rsl", range(1, 12, 12), {{"only", {"quickfix"}}});
   REQUIRE(offered.size() == 1);
-  CHECK(offered[0].at("title") == "Replace `LEVL` by `LEVEL`");
+  CHECK(offered[0].at("title") == "Replace `LEVL` with `LEVEL`");
   CHECK(offered[0].at("isPreferred") == true);
   CHECK(offered[0].at("diagnostics") == editor.diagnostics("robot.rsl"));
   CHECK(offered[0].at("edit").at("changes").at(editor.uri("robot.rsl")) ==

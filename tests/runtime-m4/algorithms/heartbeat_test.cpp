@@ -9,7 +9,7 @@ using robosync::test::Module;
 
 namespace {
 
-// So many beats at a distance, each 200 ms long, at 50 Hz.
+// Feeds `beats` beats at a distance, each 200 ms long, at 50 Hz.
 void beat(Module& module, int beats, int distance_ms) {
   for (int ms = 0; ms < beats * distance_ms; ms += 20)
     (void)module.put({ms % distance_ms < 200 ? 3000 : 1000});

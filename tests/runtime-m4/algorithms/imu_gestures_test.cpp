@@ -1,4 +1,5 @@
-// What imu_gestures makes of motions, by the clock. They are made up: no body moves like this, but each has what the module looks for.
+// How imu_gestures classifies motions, with times. The motions are synthetic: no body moves like this, but each has the features
+// that the module looks for.
 #include <cmath>
 #include <functional>
 
@@ -24,7 +25,7 @@ struct Body : Module {
     (void)hold({}, rest_ms);
   }
 
-  // All that changes but the jerk, with the time since it began.
+  // All changes except those of the jerk, with the time since it began.
   std::string move(int ms, const std::function<Vector(int)>& at) {
     std::string text;
     for (int now = 0; now < ms; now += period) {
@@ -42,7 +43,7 @@ struct Body : Module {
   std::string hold(Vector a, int ms) {
     return move(ms, [&](int) { return a; });
   }
-  // To and fro along Y, so often a second.
+  // Shakes along Y, `hertz` times a second.
   std::string shake(int hertz, int strength, int ms) {
     return move(ms, [&](int now) {
       const double turns = hertz * now / 1000.0;
@@ -154,7 +155,7 @@ TEST_CASE("what is raised is lifted, what is put down is not") {
   CHECK(body.hold({}, 130) == "110 GESTURE tapped");
   CHECK(body.hold({0, 0, 1300}, 150).empty());  // something else is shown
   (void)body.hold({0, 1000, 0}, 3000);          // held on its side
-  CHECK(Body(10, {}, 10).hold({0, 0, 1300}, 150) == "90 GESTURE lifted");  // at once
+  CHECK(Body(10, {}, 10).hold({0, 0, 1300}, 150) == "90 GESTURE lifted");  // right at the start
   CHECK(body.hold({0, 1300, 0}, 150) == "90 GESTURE lifted");              // up is up
 }
 

@@ -1,4 +1,4 @@
-// What the firmware refuses of an image's algorithms, one wrong thing at a time.
+// What the firmware refuses in an image's algorithms, one error at a time.
 #include "runtime-m4/algorithms/judge.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ const char* const kSkinRobot = R"({
   "actuators": [{"name": "a", "type": "VIRTUAL", "device": "virtual_actuator"}],
   "algorithms": [{"name": "skin", "module": "touch_levels", "input": "pad"}]})";
 
-// A view of an image that may be changed.
+// A view of an image that can be modified.
 struct Judged {
   Judged() : bytes(test::compile("WHEN skin TOUCH IS tap\nDO MOVE a\nEND\n", kSkinRobot)) {
     REQUIRE(vm::view_image(bytes, image));
@@ -66,7 +66,7 @@ TEST_CASE("an algorithm needs a module, inputs, parameters, a period and outputs
 }
 
 TEST_CASE("a module that wants more memory than it may have is refused, with these parameters") {
-  // What it wants are its first two parameters.
+  // Its first two parameters are the memory that it wants.
   robosync_module greedy = *algorithms::find_module(0);
   greedy.state_bytes = [](const std::int32_t* config) { return std::uint32_t(config[0]); };
   greedy.scratch_bytes = [](const std::int32_t* config) { return std::uint32_t(config[1]); };

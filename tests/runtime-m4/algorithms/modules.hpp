@@ -1,4 +1,4 @@
-// A module outside of any robot, sample by sample.
+// A module without a robot, fed sample by sample.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace robosync::test {
 
 class Module {
 public:
-  // `config`: in the order of its parameters; what is left out is as usual.
+  // `config`: in the order of its parameters; missing ones have their defaults.
   Module(const robosync_description& description, std::vector<std::int32_t> config = {},
          std::uint32_t period_ms = 20);
 
-  // What has changed, as "LEVEL light TOUCH tap"; numbers in thousandths.
+  // Returns the changes, as "LEVEL light TOUCH tap"; numbers in thousandths.
   std::string put(std::initializer_list<std::int32_t> inputs);
   std::int32_t output(std::size_t place) const { return outputs_[place]; }
 

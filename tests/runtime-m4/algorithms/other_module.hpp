@@ -1,5 +1,5 @@
-// While it is there, the first module of the firmware is another one, for the board's side only: the compiler and the names
-// stay as they are. A test can so have modules that break their word. The linker does it (--wrap).
+// While one exists, it replaces the firmware's first module, on the board's side only: the compiler and the names stay as they
+// are. This gives tests modules that violate their contract. It is done by the linker (--wrap).
 #pragma once
 
 #include "runtime-m4/algorithms/modules.hpp"

@@ -1,4 +1,4 @@
-// What pitch makes of the pitches that a microphone hears, sample by sample.
+// How pitch interprets the pitches that a microphone hears, sample by sample.
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -19,7 +19,7 @@ struct Song : Module {
     (void)quiet(20);
   }
 
-  // What changes of NOTE and TONE, with the time since it began.
+  // Returns the changes of NOTE and TONE, with the time since it began.
   std::string hold(double hertz, int ms, int clarity = 95, int loudness = 60) {
     std::string text;
     for (int at = 0; at < ms; at += 20) {
@@ -114,7 +114,7 @@ TEST_CASE("what is too soft, not clear or out of the range is no tone") {
   CHECK(song.hold(1000.1, 200).empty());
   CHECK(song.hold(200, 60, 60, 40) == "40 g, 40 steady");
   CHECK(song.hold(1000, 60) == "40 b");
-  // No single samples that do not belong together.
+  // Single, unrelated samples are not a tone.
   Song noise;
   for (const double hertz : {100, 300, 120, 700, 90, 1400, 200, 240, 500})
     CHECK_THAT(noise.hold(hertz, 40), !Catch::Contains("steady"));

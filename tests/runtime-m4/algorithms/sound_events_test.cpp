@@ -1,4 +1,4 @@
-// What sound_events makes of loudness, high tones and pitch, by the clock.
+// How sound_events interprets loudness, high tones and pitch, with times.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/algorithms/modules.hpp"
@@ -10,7 +10,7 @@ namespace {
 struct Room : Module {
   Room() : Module(*sound_events_describe(ROBOSYNC_ABI)) { hold(30, 27, 0, 0, 400); }
 
-  // Sound of that kind for so long; the events that begin, with the time since it began.
+  // Feeds such a sound for `ms`; returns the events that begin, with the time since it began.
   std::string hold(int loudness, int highs, int pitch, int clarity, int ms) {
     std::string text;
     for (int at = 0; at < ms; at += 20) {

@@ -1,4 +1,4 @@
-// What touch_levels makes of touches, by the clock.
+// How touch_levels interprets touches, with times.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/algorithms/modules.hpp"
@@ -11,7 +11,7 @@ constexpr std::int32_t kLight = 1000, kFirm = 5000, kMargin = 500;
 
 struct Skin : Module {
   Skin() : Module(*touch_levels_describe(ROBOSYNC_ABI), {kLight, kFirm, kMargin, 300, 700, 400}) {}
-  // The level for so long, at 50 Hz; all that changes, with the time since it began.
+  // Feeds the level for `ms`, at 50 Hz; returns all changes, with the time since it began.
   std::string hold(std::int32_t level, int ms) {
     std::string text;
     for (int at = 0; at < ms; at += 20)

@@ -1,6 +1,6 @@
-// Analog inputs, as the boards' code has them, against models of the converters: which pin is measured, how well, in which order they
-// are brought up, and what comes of one that does not answer. The models were written from RM0351 and from Nordic's Product
-// Specification by who wrote the drivers. Time passes with each register that is read or written: as little as can be.
+// The boards' analog inputs against models of the converters: which pin is measured, how accurately, the order of the start-up,
+// and a converter that does not answer. The models were written from RM0351 and from Nordic's Product Specification, by the
+// author of the drivers. Each register access takes the least possible time.
 #include "runtime-m4/boards/stm32l4/analog.hpp"
 
 #include <algorithm>
@@ -25,13 +25,13 @@ using namespace robosync;
 namespace {
 
 constexpr double kSupply = 3.3;
-// Who reads out of dividers of 50 kΩ takes the voltage for so long: DS10969's table for its 39 kΩ, times 50 / 39, is 10.3 us; Nordic
-// says 10 us up to 100 kΩ.
+// The sampling time that voltage dividers of 50 kΩ need: DS10969's table for 39 kΩ, times 50 / 39, gives 10.3 us; Nordic says
+// 10 us up to 100 kΩ.
 constexpr double kLongEnoughUs = 10;
 
 enum class Breaks { nothing, everything, calibration, ends, stops, late };
 
-// A converter's time: microseconds since its chip runs, and when something that goes on is over.
+// A converter's time: microseconds since its chip runs, and when the present operation ends.
 struct Doing {
   std::optional<double> until;
   void begin(double now, double us) { until = now + us; }
@@ -46,7 +46,7 @@ struct Doing {
 struct ConverterOfMicrobit : tests::Nrf52833 {
   static constexpr const char* kName = "microbit-v2";
   static constexpr std::uintptr_t kSaadc = 0x4000'7000;
-  // The analog inputs of the chip that are at the edge connector, and where.
+  // The chip's analog inputs at the edge connector: {pin, chip's pin}.
   const std::map<std::uint16_t, Pin> pins{{0, {0, 2}}, {1, {0, 3}}, {2, {0, 4}}};
   const std::map<std::uint32_t, Pin> inputs{{1, {0, 2}}, {2, {0, 3}}, {3, {0, 4}}, {4, {0, 5}}};
 
@@ -264,7 +264,7 @@ struct ConverterOfL475 : tests::Stm32Timers {
     tests::demand((sources >> 28 & 3) == 3 && (common & 3U << 16) == 0, "it has no clock");
     return 80.0 / kBy.at(common >> 18 & 15);
   }
-  // Bits that only software may set, and only the chip takes back; and the deep power-down and the regulator.
+  // Bits that only software may set and only the chip clears; and the deep power-down and the regulator.
   void order(std::uint32_t value) {
     constexpr std::uint32_t kPower = 1U << 28 | 1U << 29;
     tests::demand((value & ~(kPower | 1U << 31 | 0b10101U)) == 0,

@@ -1,5 +1,5 @@
-// The I2C buses of the boards, as they are shipped, against models of their masters: what is asked for is there in
-// time and costs an interrupt or two, and whatever the device does, nobody waits for it.
+// The shipped I2C code of the boards, against models of their masters: results are ready in time and cost an interrupt or two,
+// and whatever the device does, no thread waits for it.
 #include <array>
 
 #include <catch2/catch.hpp>
@@ -31,7 +31,7 @@ constexpr std::byte operator""_b(unsigned long long value) {
 // Nordic: TWIM0; tech.microbit.org: the internal bus is P0.08 and P0.16.
 struct MicrobitBus : tests::TwimBus {
   static constexpr const policy::BoardCosts& kCosts = kMicrobitCosts;
-  static constexpr unsigned kInterrupts = 1;  // of a reading
+  static constexpr unsigned kInterrupts = 1;  // for a read
   MicrobitBus() : TwimBus(0x4000'3000, {0, 8}, {0, 16}) {}
   boards::microbit::I2c bus{{boards::microbit::kTwim0, {.clock = {0, 8}, .data = {0, 16}}}};
 };
@@ -40,7 +40,7 @@ struct MicrobitBus : tests::TwimBus {
 template <unsigned kNumber>
 struct L475Bus : tests::Stm32I2c {
   static constexpr const policy::BoardCosts& kCosts = kL475Costs;
-  static constexpr unsigned kInterrupts = 2;  // one when it is asked, and one when it has answered
+  static constexpr unsigned kInterrupts = 2;  // one after the request, one after the answer
   static constexpr bool kOwn = kNumber == 2;
   L475Bus()
       : Stm32I2c(kOwn ? Wiring{0x4000'5800, 1U << 22, 10, 11, 4, 5}
@@ -48,7 +48,7 @@ struct L475Bus : tests::Stm32I2c {
   boards::stm32l4::I2c bus{boards::stm32l4::i2c_master(kOwn ? 1 : 0)};
 };
 
-// Of a device with pages: what stands in the one register depends on the other.
+// A device with pages: the value of one register depends on the other.
 constexpr std::byte kPage = 0x00_b;
 constexpr std::byte kPaged = 0x0B_b;
 constexpr std::byte kPageMark = 0x40_b;
@@ -60,7 +60,7 @@ struct Bus : Model {
     for (unsigned i = 0; i < this->registers.size(); ++i)
       this->registers[i] = static_cast<std::byte>(i ^ 0x5A);
   }
-  // The processor comes to an interrupt `latency` microseconds late.
+  // The processor takes each interrupt `latency` microseconds late.
   void run(unsigned microseconds, unsigned latency = 0) {
     unsigned waits = 0;
     for (; microseconds > 0; --microseconds) {
@@ -133,7 +133,7 @@ TEMPLATE_TEST_CASE("a bus: who wants the same gets it together, others one after
   }
   CHECK(bus.collect(0x30_b));
   CHECK(bus.got_from(0x30));
-  CHECK_FALSE(bus.collect(0x31_b));  // nobody has asked for it
+  CHECK_FALSE(bus.collect(0x31_b));  // was not asked for
   CHECK_FALSE(bus.collect(0x30_b, 2));
 }
 
@@ -183,7 +183,7 @@ TEMPLATE_TEST_CASE(
   CHECK_FALSE(bus.bus.is_busy());
   CHECK_FALSE(bus.collect(0x10_b));
   bus.refuses_after = ~0U;
-  bus.ask(0x30_b);  // and nothing is left of what was refused
+  bus.ask(0x30_b);  // nothing is left of the refused transfer
   bus.run(500);
   CHECK(bus.collect(0x30_b));
   CHECK(bus.got_from(0x30));
@@ -210,7 +210,7 @@ TEMPLATE_TEST_CASE(
   CHECK_FALSE(bus.collect(0x10_b));
   CHECK_FALSE(bus.bus.is_busy());
   CHECK_FALSE(bus.ask(0x10_b));
-  CHECK_FALSE(bus.bus.is_busy());  // nobody tries while it is held
+  CHECK_FALSE(bus.bus.is_busy());  // no transfer begins while the line is held
   CHECK_FALSE(bus.collect(0x10_b));
   CHECK(bus.bus.state().held == 1);
   CHECK(bus.clocks == 0);
@@ -274,7 +274,7 @@ TEMPLATE_TEST_CASE(
   bus.run(5000);
   for (unsigned i = 0; i < kMost + 2; ++i)
     CHECK(bus.collect(static_cast<std::byte>(i)) == (i < kMost));
-  for (unsigned i = kMost; i < kMost + 2; ++i)  // what was asked the longest time ago gives way
+  for (unsigned i = kMost; i < kMost + 2; ++i)  // replaces the requests asked the longest time ago
     bus.ask(static_cast<std::byte>(i));
   bus.run(1000);
   for (unsigned i = 0; i < kMost + 2; ++i)
@@ -311,7 +311,7 @@ TEMPLATE_TEST_CASE("a bus: of a device with pages each reading is of its own pag
       CHECK(bus.got[0] == (page ^ kPageMark));
     }
   }
-  CHECK_FALSE(bus.collect(kPaged, 1));  // of whatever page: nobody has asked for that
+  CHECK_FALSE(bus.collect(kPaged, 1));  // was not asked for without a page
   CHECK_FALSE(read(false, 2_b));
   bus.refuses_after = 1;  // the page is not taken, so nothing is read
   read(true, 3_b);
@@ -333,7 +333,7 @@ TEMPLATE_TEST_CASE("a bus: what is written each time goes out each time", "", Mi
   }
 }
 
-// By the boards' own figures, as analysis/bus_load.cpp has them; each interrupt comes 12 us late.
+// With the boards' own figures, as in analysis/bus_load.cpp; each interrupt comes 12 us late.
 TEMPLATE_TEST_CASE("a bus: what rsc lets be asked at once is there in time", "", MicrobitBus,
                    L475Bus<1>, L475Bus<2>) {
   const policy::BoardCosts& board = TestType::kCosts;
@@ -408,7 +408,7 @@ TEMPLATE_TEST_CASE("STM32L475: a bus error that the master sees is none", "", L4
 
 TEMPLATE_TEST_CASE("STM32L475: DMA that fails is a transfer that failed, and no more", "",
                    L475Bus<1>, L475Bus<2>) {
-  // At what is to be written, at what is read, and at the last of it.
+  // During the write, during the read, and at the last byte.
   for (const unsigned after : {10U, 70U, 130U}) {
     Bus<TestType> bus;
     bus.ask(0x10_b);

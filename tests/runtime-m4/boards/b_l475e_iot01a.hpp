@@ -1,4 +1,4 @@
-// The header of the B-L475E-IOT01A, for the tests of its pins: UM2153, table 4. Nothing of it knows the driver's tables.
+// The header of the B-L475E-IOT01A, for the tests of its pins: UM2153, table 4. Independent of the driver's tables.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 namespace robosync::tests::wired {
 
 inline constexpr const char* kName = "b-l475e-iot01a";
-// Which pin of the chip stands at which of the header.
+// The chip's pin at each pin of the header.
 inline const std::map<std::uint16_t, Stm32Timers::Pin> kHeader{
     {0, {'A', 1}},  {1, {'A', 0}},  {2, {'D', 14}}, {3, {'B', 0}}, {4, {'A', 3}},
     {5, {'B', 4}},  {6, {'B', 1}},  {7, {'A', 4}},  {8, {'B', 2}}, {9, {'A', 15}},

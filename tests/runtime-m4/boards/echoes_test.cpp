@@ -1,5 +1,5 @@
-// Trigger and echo, as the boards' code has them, against models of what measures them: the pulse, the length of an echo, and
-// whatever else a wire can do. The models were written from RM0351 and from Nordic's Product Specification by who wrote the
+// The boards' trigger and echo code against models of the peripherals: the pulse, the length of an echo, and anything else
+// that a wire can do. The models were written from RM0351 and from Nordic's Product Specification, by the author of the
 // drivers.
 #include "runtime-m4/boards/stm32l4/echoes.hpp"
 
@@ -21,7 +21,7 @@ using namespace robosync;
 
 namespace {
 
-// EXTI and SYSCFG: an edge is pending when it is one that the line looks at, and interrupts while its line may.
+// EXTI and SYSCFG: an edge becomes pending if its line is configured for it, and interrupts if the line is unmasked.
 struct EdgesOfL475 : tests::Stm32Timers {
   static constexpr std::uint16_t kTrigger = 3, kEcho = 7, kOtherTrigger = 13, kOther = 12;
   const std::map<std::uint16_t, Pin> pins{
@@ -89,7 +89,7 @@ struct EdgesOfL475 : tests::Stm32Timers {
   std::uint32_t system_clocks = 0, mask = 0xFF82'0000, rising = 0, falling = 0, pending = 0;
   std::array<std::uint32_t, 4> ports{};
   std::map<std::uint16_t, bool> level_of;
-  std::uint32_t now = 0xFFFF'0000U / 80;  // the counter runs over
+  std::uint32_t now = 0xFFFF'0000U / 80;  // the counter will overflow
   unsigned interrupts = 0;
 };
 
@@ -227,7 +227,7 @@ struct EdgesOfMicrobit : tests::Nrf52833 {
   unsigned interrupts = 0;
 };
 
-// A wire changes, and the processor comes to it at once; or `late`.
+// A wire changes, and the processor takes the interrupt immediately, or `late`.
 template <typename Chip>
 void set_wire(Chip& chip, bool high, std::uint16_t pin = Chip::kEcho) {
   chip.set(pin, high);
@@ -252,7 +252,7 @@ void send_echo(Chip& chip, unsigned us) {
 
 TEMPLATE_TEST_CASE("echo: one pulse of 10 us or a little more, whenever it is asked for", "",
                    EdgesOfL475, EdgesOfMicrobit) {
-  // Where in the frame of the pin's pulses it is, the last ones at its end.
+  // Different places in the frame of the pin's pulses; the last ones are at its end.
   for (const unsigned before :
        {0U, 100U, 10'000U, 19'970U, 19'980U, 19'988U, 19'992U, 19'996U, 19'999U}) {
     TestType chip;
@@ -270,7 +270,7 @@ TEMPLATE_TEST_CASE("echo: one pulse of 10 us or a little more, whenever it is as
     CAPTURE(before);
     CHECK(high >= 11);
     CHECK(high <= 12);
-    CHECK(begins == 0);  // it was high at once, and is never again
+    CHECK(begins == 0);  // the pulse began immediately, and there is no second one
   }
 }
 
@@ -296,7 +296,7 @@ TEMPLATE_TEST_CASE(
   send_echo(chip, 1000);
   TestType::ping(TestType::kTrigger, TestType::kEcho);
   let_pass(chip, 40'000);
-  CHECK(TestType::take(TestType::kEcho) == 0);  // nor what was measured before
+  CHECK(TestType::take(TestType::kEcho) == 0);  // not the earlier result either
   TestType::ping(TestType::kTrigger, TestType::kEcho);
   let_pass(chip, 500);
   set_wire(chip, true);
@@ -336,7 +336,7 @@ TEMPLATE_TEST_CASE(
   storm();
   CHECK(chip.interrupts == 2);
   set_wire(chip, false);
-  CHECK(TestType::take(TestType::kEcho) <= 4);  // noise: no echo is as short
+  CHECK(TestType::take(TestType::kEcho) <= 4);  // noise: no echo is that short
   storm();
   CHECK(chip.interrupts == 2);
   set_wire(chip, false);
@@ -350,7 +350,7 @@ TEMPLATE_TEST_CASE("echo: edges that the processor comes to late give no wrong l
   TestType chip;
   TestType::ping(TestType::kTrigger, TestType::kEcho);
   for (const bool high : {true, false})
-    chip.set(TestType::kEcho, high);  // both, before it comes to one
+    chip.set(TestType::kEcho, high);  // both edges, before the processor handles one
   chip.interrupt();
   CHECK(TestType::take(TestType::kEcho) == 0);
   TestType::ping(TestType::kTrigger, TestType::kEcho);

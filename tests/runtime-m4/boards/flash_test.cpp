@@ -1,5 +1,5 @@
-// What the boards keep without power in their own flash, as it is shipped, against models of the flash: cut off at every word that is
-// written, and at every part of an erasing.
+// The boards' shipped stores in their own flash, against models of the flash: the power is cut at every word that is written, and
+// at every part of an erase.
 #include "runtime-m4/boards/stm32l4/flash.hpp"
 
 #include <catch2/catch.hpp>
@@ -52,7 +52,7 @@ std::uint32_t beginning(const L475Flash& flash) {
   return flash.chip.kBegin;
 }
 
-// Ends what a ProgramStore or NumberStore was asked for. Bounded.
+// Completes the request of a ProgramStore or NumberStore. Bounded.
 template <typename Flash, typename Kept>
 void finish(Flash& flash, Kept& store) {
   for (unsigned i = 0; i < 10'000; ++i) {
@@ -63,7 +63,7 @@ void finish(Flash& flash, Kept& store) {
   FAIL("the store comes to no end");
 }
 
-// After the power has come back: what was in the memory is gone.
+// After power-up: the contents of RAM are lost.
 template <typename Kept, typename Flash>
 Kept opened(Flash& flash) {
   flash.chip.restart();
@@ -147,7 +147,7 @@ TEMPLATE_TEST_CASE(
     auto again = opened<ProgramStore>(flash);
     REQUIRE(again.kept() == named(whole ? third : second));
     REQUIRE(kept(flash, again) == (whole ? third : second));
-    keep(flash, again, second);  // and it goes on
+    keep(flash, again, second);  // and it works again
     auto last = opened<ProgramStore>(flash);
     REQUIRE(kept(flash, last) == second);
   }
@@ -157,7 +157,7 @@ TEMPLATE_TEST_CASE(
 TEMPLATE_TEST_CASE(
     "flash: a cut of the power at every word leaves the numbers of before, or the new ones", "",
     MicrobitFlash, L475Flash) {
-  // The last place of a page, and the first one of the next, which is erased before.
+  // The last place of a page, and the first one of the next, which is erased first.
   const unsigned together = TestType().store.page() / update::StoreLayout::kNumbersBytes;
   for (const unsigned before : {together - 2, together - 1}) {
     unsigned operations = 0;
@@ -175,7 +175,7 @@ TEMPLATE_TEST_CASE(
       REQUIRE((now == some_numbers(before - 1) || now == some_numbers(77)));
       if (cut == operations) REQUIRE(now == some_numbers(77));
       auto again = opened<NumberStore>(flash);
-      for (unsigned i = 0; i < 3; ++i)  // a place that was spoiled is left out
+      for (unsigned i = 0; i < 3; ++i)  // a spoiled place is skipped
         write(flash, again, 100 + i);
       REQUIRE(numbers(flash) == some_numbers(102));
     }
@@ -280,7 +280,7 @@ std::uint8_t owner_in(L475Flash& flash) {
   return keys.record().paired == 0 ? std::uint8_t{0} : keys.record().owner.seed[0];
 }
 
-// What the store says to the last of these calls, each so long after the one before; at most so many.
+// The store's answer to the last call. Calls come `us` apart; at most `calls` of them.
 Store::Outcome outcome_of_write(L475Flash& flash, unsigned us, unsigned& calls) {
   const Bytes piece = some_image(1, Store::kPiece);
   Store::Outcome outcome = Store::Outcome::at_work;
@@ -315,7 +315,7 @@ TEST_CASE(
 }
 
 TEST_CASE("B-L475E-IOT01A: who erases lets nobody wait, however often he is asked meanwhile") {
-  // Asked as often as bytes pass the line both ways, and as seldom as the link thread gets to it.
+  // As often as bytes on the line in both directions allow, and as rarely as the link thread runs.
   for (const unsigned us : {43U, 1000U, 30'000U}) {
     CAPTURE(us);
     L475Flash flash;

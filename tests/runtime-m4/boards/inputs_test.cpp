@@ -1,4 +1,4 @@
-// The input pins of the boards, as they are shipped, against the models of their ports: each reads its own pin of the chip,
+// The boards' shipped input pins against models of their ports: each reads its own pin of the chip,
 // and is pulled up; no other pin can be read.
 #include "runtime-m4/boards/stm32l4/inputs.hpp"
 

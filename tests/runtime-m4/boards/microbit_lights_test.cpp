@@ -1,5 +1,5 @@
-// The lights of the micro:bit V2, as they are shipped, against the model of the chip's ports: which of them glow in each row's
-// time, and while it changes.
+// The shipped code for the lights of the micro:bit V2, against the model of the chip's ports: which of them glow during each row,
+// and while the row changes.
 #include <random>
 #include <set>
 
@@ -23,7 +23,7 @@ struct Display : Nrf52833 {
     lights::start();
     started = true;
   }
-  // Those that current flows through: from a row that is high to a column that is low.
+  // The lights with current: from a row that is high to a column that is low.
   std::uint32_t glowing() const {
     std::uint32_t lit = 0;
     for (unsigned row = 0; row < 5; ++row)
@@ -38,7 +38,7 @@ struct Display : Nrf52833 {
       on += level(row) == Level::high ? 1U : 0U;
     return on;
   }
-  // Nothing glows, at any write, that is not in a picture that may be shown.
+  // After every write, only lights of a picture that may be shown glow.
   void write(std::uintptr_t address, std::uint32_t value) override {
     Nrf52833::write(address, value);
     if ((glowing() & ~allowed) != 0) stray = true;

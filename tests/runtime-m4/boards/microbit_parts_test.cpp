@@ -1,5 +1,5 @@
-// The watchdog of the micro:bit V2, what it says of a reset, its clock and its serial line, as they are shipped, against models of
-// the chip's registers.
+// The shipped code for the watchdog of the micro:bit V2, the reset cause, the clock and the serial line, against models of the
+// chip's registers.
 #include <deque>
 #include <random>
 #include <vector>
@@ -23,7 +23,7 @@ TEST_CASE(
   Nrf52833 chip;
   microbit::start_watchdog(100);
   CHECK(chip.watchdog().runs);
-  CHECK(chip.watchdog().configuration == 1);  // in sleep, and not while a debugger halts
+  CHECK(chip.watchdog().configuration == 1);  // runs in sleep, but not while a debugger halts
   for (unsigned i = 0; i < 50; ++i) {
     chip.pass_slow_counts(3200);  // 97.7 ms
     REQUIRE_FALSE(chip.watchdog().expired);
@@ -169,7 +169,7 @@ TEST_CASE(
       Clocks chip;
       chip.slowest = slowest;
       REQUIRE(microbit::start_clock());
-      chip.counter = 0xFFFF'FFF0 - counts;  // it goes on behind its end
+      chip.counter = 0xFFFF'FFF0 - counts;  // it wraps
       const std::uint32_t begin = chip.counter;
       const bool missed = microbit::begin_alarm(counts);
       for (std::uint32_t i = 0; i < 2 * counts + 100 && !missed && !chip.interrupt(); ++i)
@@ -253,7 +253,7 @@ public:
     went.push_back(leaving_);
     sent_ = 1;
   }
-  // False when there is no room for it.
+  // False if there is no room for it.
   bool come_in(std::byte byte) {
     if (waiting_.size() + (has_byte_ ? 1 : 0) == 6) return false;
     waiting_.push_back(byte);
@@ -265,7 +265,7 @@ public:
            (sent_ != 0 && (interrupts_ & 1U << 7) != 0);
   }
   std::vector<std::byte> went;
-  bool pending = false;  // in the core's interrupt controller
+  bool pending = false;  // in the NVIC
   bool receives = false, transmits = false;
 
 private:
@@ -315,7 +315,7 @@ private:
 
 UartModel* line_model = nullptr;
 
-// As the board's, but for the interrupt controller.
+// Like the board's, except for the NVIC.
 struct TestedUart : microbit::Uart {
   static void start() { open(); }
   static void begin_to_send() {

@@ -1,5 +1,5 @@
-// The pins of the micro:bit V2, as they are shipped, against the model of the chip's PWM modules: what comes out of each, whenever
-// a module reads its values, and however late its interrupt is served.
+// The shipped code for the pins of the micro:bit V2, against the model of the chip's PWM modules: the output of each pin,
+// whenever a module reads its values, and however late its interrupt is served.
 #include <map>
 #include <random>
 #include <vector>
@@ -16,7 +16,7 @@ namespace edge = boards::microbit::pins;
 
 namespace {
 
-// tech.microbit.org, "Edge Connector & micro:bit pinout", V2: which pin of the chip stands where at the edge.
+// tech.microbit.org, "Edge Connector & micro:bit pinout", V2: the chip's pin at each pin of the edge connector.
 const std::map<std::uint16_t, Nrf52833::Pin> kEdge{
     {0, {0, 2}},   {1, {0, 3}},   {2, {0, 4}},   {3, {0, 31}},  {4, {0, 28}},
     {5, {0, 14}},  {6, {1, 5}},   {7, {0, 11}},  {8, {0, 10}},  {9, {0, 9}},
@@ -24,7 +24,7 @@ const std::map<std::uint16_t, Nrf52833::Pin> kEdge{
     {15, {0, 13}}, {16, {1, 2}},  {19, {0, 26}}, {20, {1, 0}}};
 constexpr std::uint16_t kEnable = 16;  // of a chip: high is off
 constexpr unsigned kEdgeFrame = 20'000;
-constexpr unsigned kNewest = 2 * kEdgeFrame;  // then what was written is at work
+constexpr unsigned kNewest = 2 * kEdgeFrame;  // until a written value is in effect
 constexpr unsigned kBackAgain = 3 * kEdgeFrame;
 
 std::vector<std::uint16_t> edge_outputs() {
@@ -37,7 +37,7 @@ std::vector<std::uint16_t> edge_outputs() {
   return found;
 }
 
-// The chip, started as the board starts it, and never with a pin high on the way.
+// The chip, started as the board starts it. No pin may be high during the start.
 struct EdgeChip : Nrf52833 {
   explicit EdgeChip(Nrf52833::Fetch fetch = Nrf52833::Fetch::late) : Nrf52833(fetch) {
     edge::start();
@@ -59,7 +59,7 @@ struct EdgeChip : Nrf52833 {
       ++served;
     }
   }
-  // How long the pin is high in the next so many microseconds.
+  // How long the pin is high in the next `us` microseconds.
   unsigned high_time(std::uint16_t pin, unsigned us = kEdgeFrame) {
     unsigned time = 0;
     for (; us > 0; --us) {
@@ -68,7 +68,7 @@ struct EdgeChip : Nrf52833 {
     }
     return time;
   }
-  // The same of each pin but that of a chip.
+  // The same for each pin except the enable pin.
   std::map<std::uint16_t, unsigned> high_times(unsigned us = kEdgeFrame) {
     std::map<std::uint16_t, unsigned> times;
     for (; us > 0; --us) {
@@ -176,15 +176,15 @@ TEST_CASE("micro:bit: off is at once, and only that pin; on again comes with who
       CHECK(chip.high_time(12) == 2000);
       chip.pass(kBackAgain);
       CHECK(chip.high_time(0) == 700);
-      const unsigned served = chip.served;  // as long as somebody waits for a period
+      const unsigned served = chip.served;  // interrupts come while a pin waits for a period
       chip.pass(kEdgeFrame);
       CHECK(chip.served == served);
     }
   }
 }
 
-// What a pulse may be like: it begins where a frame does, and ends when one has asked for that, or after a time that was
-// asked for since the pin was off.
+// A pulse must begin with a frame, and end when that was requested, or after a length that was requested since the pin was
+// off.
 TEST_CASE(
     "micro:bit: whatever is written when, and however late interrupts are, pulses are whole") {
   std::mt19937 random(52833);
@@ -230,7 +230,7 @@ TEST_CASE("micro:bit: all off is at once, and before the start it does nothing")
   edge::switch_off();
   for (const auto& [number, time] : chip.high_times(2 * kEdgeFrame))
     CHECK(time == 0);
-  CHECK(chip.served == 0);  // nor does a period end any more
+  CHECK(chip.served == 0);  // no further period interrupts
   edge::write(14, kEdgeFrame);
   CHECK(chip.high_time(14, 2 * kEdgeFrame) == 0);
   Nrf52833 fresh;
@@ -243,7 +243,7 @@ TEST_CASE(
     "off") {
   EdgeChip chip;
   CHECK(chip.at(kEnable) == Nrf52833::Level::high);
-  edge::write(kEnable, 1500);  // it gives no pulses, nor is it low for a program's sake
+  edge::write(kEnable, 1500);  // gives no pulses, and does not go low
   edge::let_go(kEnable);
   edge::take_back(kEnable);
   chip.pass(kNewest);

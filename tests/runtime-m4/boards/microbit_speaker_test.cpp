@@ -1,4 +1,4 @@
-// The speaker of the micro:bit V2, as it is shipped, against the model of the chip: what its pin does in time.
+// The shipped code for the speaker of the micro:bit V2, against the model of the chip: what its pin does over time.
 #include <cmath>
 
 #include <catch2/catch.hpp>

@@ -17,7 +17,7 @@ bool is_port(std::uintptr_t address) {
   return address >= kGpio && address < kGpio + 0x1000;
 }
 
-// Both ports' registers lie in one page, P1's 0x300 behind P0's.
+// Both ports' registers are in one page, P1's 0x300 after P0's.
 std::pair<unsigned, std::uintptr_t> of_port(std::uintptr_t address) {
   const std::uintptr_t offset = address - kGpio;
   for (const unsigned port : {0U, 1U}) {
@@ -30,8 +30,8 @@ std::pair<unsigned, std::uintptr_t> of_port(std::uintptr_t address) {
 
 }  // namespace
 
-// Up: from the begin of the period to its end. With its highest bit a value is high first, without it low first, and
-// changes where the counter comes to it; never, where that is behind the counter's end.
+// The counter counts up from the beginning of the period to its end. A value with its highest bit set is high first, otherwise
+// low first, and changes when the counter reaches it; never, if it is beyond the counter's top.
 bool Nrf52833::Pwm::high(unsigned channel) const {
   const bool first = (at_work[channel] >> 15) != 0;
   const unsigned compare = at_work[channel] & 0x7FFF;
@@ -142,7 +142,7 @@ void Nrf52833::play(Pwm& pwm) {
   begin_period(pwm);
 }
 
-// Where the counter ends is the fourth value, in the mode for wave forms.
+// In waveform mode the fourth value is the counter's top.
 void Nrf52833::begin_period(Pwm& pwm) {
   pwm.at_work = pwm.fetched;
   if (pwm.decoder == 3) pwm.top = pwm.at_work[3] & 0x7FFF;
@@ -157,7 +157,7 @@ void Nrf52833::fetch(Pwm& pwm) {
     pwm.fetched[channel] = values[channel];
 }
 
-// Both sequences, as often as the loop says, and from the front again where the shortcut says so; else the last values stay.
+// Plays both sequences as often as LOOP says, and starts over if the shortcut is set; otherwise the last values stay.
 void Nrf52833::end_period(Pwm& pwm) {
   pwm.period_ended = 1;
   pwm.counter = 0;
@@ -187,7 +187,7 @@ bool Nrf52833::pwm_interrupt() const {
   });
 }
 
-// IN: only of pins whose input buffer is connected. What nothing drives is as it is pulled, which is disabled, down or up.
+// IN: only pins whose input buffer is connected. An undriven pin has the level of its pull: none, down or up.
 std::uint32_t Nrf52833::read_port(unsigned number, std::uintptr_t offset) const {
   if (offset != 0x510) no_register(offset);
   std::uint32_t levels = 0;
@@ -214,7 +214,7 @@ void Nrf52833::write_port(Port& port, std::uintptr_t offset, std::uint32_t value
   }
 }
 
-// Once it runs it takes no configuration.
+// Once it runs it ignores configuration.
 void Nrf52833::write_watchdog(std::uintptr_t offset, std::uint32_t value) {
   switch (offset) {
     case 0x000:
@@ -313,7 +313,7 @@ void Nrf52833::write(std::uintptr_t address, std::uint32_t value) {
   no_register(address);
 }
 
-// A module wants its pins as outputs that are low without it.
+// A module requires its pins to be outputs that the port drives low.
 Nrf52833::Level Nrf52833::level(Pin pin) const {
   const auto [number, bit] = pin;
   const Port& port = ports_[number];

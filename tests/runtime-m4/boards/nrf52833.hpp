@@ -1,8 +1,8 @@
-// A model of the parts of an nRF52833 that the micro:bit's firmware drives and no emulator has, after Nordic's Product
-// Specification: pins (GPIO), PWM0 to PWM3, TIMER1, the watchdog, and why the chip was reset. Nothing of it knows the drivers:
-// addresses, fields and values stand here once more.
+// A model of the parts of an nRF52833 that the micro:bit's firmware drives and no emulator has, from Nordic's Product
+// Specification: pins (GPIO), PWM0 to PWM3, TIMER1, the watchdog, and the reset reason. It is independent of the drivers:
+// addresses, fields and values are defined here again.
 //
-// Left out: everything else these peripherals can do. Who uses it gets an exception.
+// Everything else that these peripherals can do is left out; using it throws an exception.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ public:
   using Pin = std::pair<unsigned, unsigned>;  // {1, 2} is P1.02
   enum class Level { floating, low, high };
 
-  // When a PWM module reads the values of a period: where the period before begins, or where it ends. Nordic does not say.
+  // When a PWM module reads the values of a period: at the beginning of the period before, or at its end. Nordic does not say.
   enum class Fetch { early, late };
 
   explicit Nrf52833(Fetch fetch = Fetch::late) : fetch_(fetch) {}
@@ -28,12 +28,12 @@ public:
   std::uint32_t read(std::uintptr_t address) override;
   void write(std::uintptr_t address, std::uint32_t value) override;
 
-  // Throws where two peripherals have the pin, or where it is not prepared for the one that has.
+  // Throws if two peripherals have the pin, or if it is not configured for the one that has it.
   Level level(Pin pin) const;
-  // What is wired to the pin gives it this level, or none.
+  // The wire at the pin drives this level, or none.
   void wire(Pin pin, std::optional<bool> high) { wired_[pin] = high; }
   void pass_microsecond();
-  // A module asks for its interrupt.
+  // A module requests its interrupt.
   bool pwm_interrupt() const;
 
   struct Watchdog {
@@ -45,12 +45,12 @@ public:
   struct RowTimer {  // TIMER1
     bool runs = false;
     std::uint32_t reached = 0, shortcuts = 0, interrupts = 0, prescaler = 4, value = 0;
-    // It comes to its value, and asks for its interrupt then, again and again.
+    // It requests its interrupt each time it reaches its value.
     bool asks() const { return runs && (interrupts & 1U << 16) != 0 && (shortcuts & 1) != 0; }
     std::uint32_t period_us() const { return (value << prescaler) / 16; }
   };
   const RowTimer& row_timer() const { return row_timer_; }
-  // Of the oscillator of 32,768 Hz.
+  // Counts of the 32,768 Hz oscillator.
   void pass_slow_counts(std::uint32_t counts);
   std::uint32_t configuration_of(Pin pin) const {
     return ports_[pin.first].configuration[pin.second];

@@ -75,7 +75,7 @@ void Nrf52833Flash::work_for(unsigned us) {
   longest_us = std::max(longest_us, us);
 }
 
-// Until its parts come to what a page takes, nobody knows what stands there.
+// Until its parts add up to the time for a page, the contents are undefined.
 void Nrf52833Flash::erase_partially(std::uint32_t page) {
   demand(configuration_ == 2, "nothing is erased without leave");
   demand(page % kPage == 0, "this is no page");

@@ -1,7 +1,7 @@
-// A model of the flash of an nRF52833 (NVMC) and of what its UART0 receives meanwhile, after Nordic's Product Specification. Nothing of it
-// knows the driver: addresses, fields and values stand here once more.
+// A model of the flash of an nRF52833 (NVMC) and of the bytes that its UART0 receives at the same time, from Nordic's Product
+// Specification. It is independent of the driver: addresses, fields and values are defined here again.
 //
-// Time passes where the core looks whether the flash is ready. Left out: all that it can do besides. Who uses it gets an
+// Time passes when the core polls whether the flash is ready. Everything else that it can do is left out; using it throws an
 // exception.
 #pragma once
 
@@ -27,12 +27,12 @@ public:
   void restart();  // the power is back
 
   std::optional<unsigned>
-      power_for;  // so many more words or parts of an erasing; what comes then is spoiled
+      power_for;  // words or parts of an erase until the power is cut; the next one is spoiled
   unsigned operations = 0;
   std::map<std::uint32_t, unsigned> erased;  // how often, by page
-  unsigned longest_us = 0;                   // that the flash was at work without a pause
+  unsigned longest_us = 0;                   // longest busy time without a pause
 
-  // Bytes that come, one each 87 us, while the flash is at work; and those that found no place.
+  // Bytes that arrive, one each 87 us, while the flash is busy; and those that were lost.
   std::deque<std::uint8_t> line;
   unsigned lost = 0;
 
@@ -42,7 +42,7 @@ public:
 private:
   static constexpr std::size_t kFifo = 6;
   struct Page {
-    unsigned erased_ms = 0;  // in parts that followed each other
+    unsigned erased_ms = 0;  // in consecutive parts
   };
 
   std::uint32_t& word_at(std::uintptr_t address);

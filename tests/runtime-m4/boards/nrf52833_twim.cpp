@@ -20,7 +20,7 @@ std::uint32_t number_of(Nrf52833::Pin pin) {
 
 }  // namespace
 
-// Who pulls a line down does so, else it is up.
+// A line is low if anything pulls it low, otherwise high.
 void TwimBus::wire_lines() {
   const bool driven = (configuration_of(clock_) & 1) != 0;
   const bool low = holds_clock || (driven && !is_set(clock_));
@@ -162,7 +162,7 @@ void TwimBus::write_own(std::uintptr_t offset, std::uint32_t value) {
     case 0x4C4:
       errors_ &= ~value;
       return;
-    case 0x500:  // off: whatever it was about, it lets its pins go
+    case 0x500:  // off: aborts any transfer and releases its pins
       enabled_ = value == 6;
       if (!enabled_) phase_ = Phase::idle;
       return;

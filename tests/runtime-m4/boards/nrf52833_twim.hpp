@@ -1,7 +1,7 @@
-// A model of a master of I2C of an nRF52833 (TWIM), after Nordic's Product Specification, with the two lines and one device
-// on them. Nothing of it knows the driver: addresses, fields and values stand here once more.
+// A model of an I2C master of an nRF52833 (TWIM), from Nordic's Product Specification, with the two lines and one device
+// on them. It is independent of the driver: addresses, fields and values are defined here again.
 //
-// Left out: everything else that a master can do. Who uses it gets an exception.
+// Everything else that a master can do is left out; using it throws an exception.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,12 @@ public:
   // --- the device ---
   unsigned address = 0x19;
   std::vector<std::byte> registers =
-      std::vector<std::byte>(256);  // the first byte written says which, bit 7 is of no matter
-  unsigned refuses_after = ~0U;     // so many bytes of a message are acknowledged
+      std::vector<std::byte>(256);  // the first byte written selects one, bit 7 is ignored
+  unsigned refuses_after = ~0U;     // bytes of a message that are acknowledged
   bool holds_clock = false;
-  unsigned holds_data = 0;                      // until so many clocks have come
-  unsigned clocks = 0;                          // that came, besides those of transfers
-  std::vector<std::vector<std::byte>> written;  // messages, as they came
+  unsigned holds_data = 0;                      // clocks until it releases the data line
+  unsigned clocks = 0;                          // clocks outside of transfers
+  std::vector<std::vector<std::byte>> written;  // messages, in order
 
   void pass_microsecond();
   bool interrupt() const;
@@ -49,7 +49,7 @@ private:
   void stop();
   void write_own(std::uintptr_t offset, std::uint32_t value);
   void configure(std::uintptr_t offset, std::uint32_t value);
-  static constexpr unsigned kByte = 23;  // microseconds of nine bits at 390 kHz
+  static constexpr unsigned kByte = 23;  // microseconds for nine bits at 390 kHz
 
   std::uintptr_t base_;
   Pin clock_, data_;

@@ -1,5 +1,5 @@
-// What the Nucleo-L476RG reads, as it is shipped, against models of its registers: each pin of its own line of the chip. What the
-// drivers do besides is tested with the other board that has this chip.
+// The Nucleo-L476RG's shipped inputs against models of its registers: each pin reads its own line of the chip. Everything else in
+// the drivers is tested with the other board that has this chip.
 #include <map>
 #include <optional>
 
@@ -22,7 +22,7 @@ namespace {
 // UM1724, "Arduino connectors on NUCLEO-L476RG"; the button B1.
 const std::map<std::uint16_t, Stm32Timers::Pin> kRead{
     {2, {'A', 10}}, {4, {'B', 5}}, {7, {'A', 8}}, {9, {'C', 7}}, {12, {'A', 6}}, {32, {'C', 13}}};
-// The same; DS10198, table 16: which channel of ADC1 a pin is.
+// The same; DS10198, table 16: the channel of ADC1 for each pin.
 struct Analog {
   Stm32Timers::Pin pin;
   unsigned channel;
@@ -40,7 +40,7 @@ compiler::Board profile() {
   return {};
 }
 
-// Ports, EXTI and SYSCFG, and an ADC1 that is up at once and measures what its channel's number is.
+// Ports, EXTI and SYSCFG, and an ADC1 that starts immediately and measures its channel's number.
 struct Nucleo : Stm32Timers {
   Nucleo() {
     for (const auto& [number, pin] : kRead)

@@ -1,5 +1,5 @@
-// The panels of both boards, as they are shipped, against models of their SPI masters and of a chain of WS2812: which colour each
-// light has, bit times included, whatever came before and whatever the line is when nothing is sent.
+// The shipped panel code of both boards, against models of their SPI masters and of a chain of WS2812: the colour of each light,
+// bit times included, whatever came before and whatever level the idle line has.
 #include "runtime-m4/boards/stm32l4/panel.hpp"
 
 #include <random>
@@ -22,7 +22,7 @@ namespace {
 
 using tests::Idle;
 constexpr unsigned kPictures = 1U << 25;
-constexpr unsigned kLong = 5000;  // microseconds, in which a picture has certainly left
+constexpr unsigned kLong = 5000;  // microseconds: more than a picture takes
 
 std::vector<std::uint16_t> panel_pins(std::string_view board) {
   std::vector<std::uint16_t> found;
@@ -68,7 +68,7 @@ struct Wired : Chip {
   tests::Ws2812Chain chain;
 };
 
-// Drawn row by row, and taken in the order of the wire.
+// Drawn row by row, then put in the order of the wire.
 std::vector<std::uint32_t> drawn(std::uint32_t picture, const policy::Panel& panel) {
   const unsigned first = panel.side == 8 ? 1 : 0;
   std::vector<std::vector<std::uint32_t>> rows(panel.side, std::vector<std::uint32_t>(panel.side));
@@ -153,7 +153,7 @@ TEMPLATE_TEST_CASE("panel: one that is given up in its midst leaves nothing behi
         CHECK(board.after(picture) == drawn(picture, panel));
       }
       board.after(0x1FF'FFFF, static_cast<unsigned>(random() % 2500));
-      TestType::output().begin(panel);  // the next program's, which begins in the dark
+      TestType::output().begin(panel);  // the next program's, which begins dark
       CHECK(board.after(0) == drawn(0, panel));
     }
 }
@@ -179,7 +179,7 @@ TEMPLATE_TEST_CASE("panel: before its first picture and behind its end it has no
     TestType::output().end();
     CHECK_FALSE(board.has_pin());
     TestType::output().end();
-    CHECK(board.after(0x0AA'AAAA) == drawn(0x0AA'AAAA, board.panel));  // it may come again
+    CHECK(board.after(0x0AA'AAAA) == drawn(0x0AA'AAAA, board.panel));  // works again
   }
 }
 

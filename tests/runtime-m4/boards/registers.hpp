@@ -1,4 +1,4 @@
-// Registers that a model behaves like: what the code under test reads and writes goes to the model that is there.
+// Simulated registers: the reads and writes of the code under test go to the present model.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ public:
   virtual void write(std::uintptr_t address, std::uint32_t value) = 0;
 };
 
-// What a model says of a use that it does not know, or that is wrong: an exception.
+// Throws: a model reports a use that it does not support, or that is wrong.
 [[noreturn]] void no_register(std::uintptr_t address);
 void demand(bool holds, const char* what);
 
-// What the code under test has told a peripheral to read by itself: the peripheral has the address as a number of 32 bits.
+// The memory that the code under test has given a peripheral for DMA: the peripheral has the address as a 32-bit number.
 const volatile void* memory_at(std::uint32_t bus_address);
 
 }  // namespace robosync::tests

@@ -106,7 +106,7 @@ void NrfSpim::pass_byte() {
   if (stops_) stopped_ = 1;
 }
 
-// Where the module is off its pin is low.
+// While the module is off, its pin is low.
 void NrfSpim::pass(unsigned us) {
   for (unsigned passed = 0; passed < us; passed += 2) {
     if (runs_)
@@ -131,7 +131,7 @@ std::uint32_t Stm32Spi::read(std::uintptr_t address) {
   }
 }
 
-// What has no clock hears nothing.
+// Without its clock it ignores writes.
 void Stm32Spi::write(std::uintptr_t address, std::uint32_t value) {
   const bool dma = address >= kDma1 && address < kDma1 + 0x400;
   const bool spi = address >= kSpi1 && address < kSpi1 + 0x400;
@@ -175,7 +175,7 @@ void Stm32Spi::write(std::uintptr_t address, std::uint32_t value) {
   }
 }
 
-// Bytes from memory, one behind the other, as the SPI asks for them.
+// Takes successive bytes from memory as the SPI requests them.
 void Stm32Spi::fill() {
   if ((dma_ & 1) == 0 || (control2_ & 1U << 1) == 0) return;
   demand(peripheral_ == kSpi1 + 0x0C && (select_ >> 8 & 0xF) == 1 && dma_ == 0b1001'0001,

@@ -1,8 +1,8 @@
-// Models of the SPI masters that tell a panel its picture: SPIM2 of an nRF52833 (Nordic's Product Specification), and SPI1 of an
-// STM32L475 with channel 3 of its DMA1 (ST's RM0351), each with the pins it may have. Nothing of them knows the drivers: addresses,
-// fields and values stand here once more.
+// Models of the SPI masters that send a panel its picture: SPIM2 of an nRF52833 (Nordic's Product Specification), and SPI1 of an
+// STM32L475 with channel 3 of its DMA1 (ST's RM0351), each with the pins it may have. They are independent of the drivers:
+// addresses, fields and values are defined here again.
 //
-// Left out: all that they can do besides. Who uses it gets an exception.
+// Everything else that they can do is left out; using it throws an exception.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace robosync::tests {
 
-// What a line of data is when the SPI has nothing to send, of which the manuals say nothing.
+// The level of the data line when the SPI has nothing to send, which the manuals do not specify.
 enum class Idle { low, high, as_it_was };
 
 class SpiLine {
 public:
   Idle idle = Idle::as_it_was;
-  // The level, and how many nanoseconds it lasts.
+  // Called with the level, and how many nanoseconds it lasts.
   std::function<void(bool, unsigned)> heard = [](bool, unsigned) {};
 
 protected:
@@ -36,13 +36,13 @@ private:
 class NrfSpim : public Nrf52833, public SpiLine {
 public:
   bool is_dead = false;  // it does nothing, and reads as 0
-  unsigned looks = 0;    // for the end of what is stopped
+  unsigned looks = 0;    // polls for the end of a stopped transfer
 
   std::uint32_t read(std::uintptr_t address) override;
   void write(std::uintptr_t address, std::uint32_t value) override;
-  // Some microseconds, of which bytes take two.
+  // Lets time pass; a byte takes two microseconds.
   void pass(unsigned us);
-  // Which pin of the chip it has; none: kNoPin of all bits.
+  // The chip's pin that it has; all bits set: none.
   std::uint32_t pin() const { return enable_ == 7 ? output_ : ~0U; }
 
 private:
@@ -59,7 +59,7 @@ class Stm32Spi : public Stm32Timers, public SpiLine {
 public:
   std::uint32_t read(std::uintptr_t address) override;
   void write(std::uintptr_t address, std::uint32_t value) override;
-  // Some microseconds, in tens of bits.
+  // Lets time pass.
   void pass(unsigned us);
   // The SPI has PA7.
   bool has_pin();

@@ -1,8 +1,8 @@
-// A model of the second bank of the flash of an STM32L475, after ST's reference manual (RM0351) and list of errors (ES0250). Nothing of
-// it knows the driver: addresses, fields and values stand here once more.
+// A model of the second bank of the flash of an STM32L475, from ST's reference manual (RM0351) and errata sheet (ES0250). It is
+// independent of the driver: addresses, fields and values are defined here again.
 //
-// Time passes where somebody looks at the flash's state, and by pass_ms(). Left out: all that it can do besides. Who
-// uses it gets an exception.
+// Time passes when the flash's state is polled, and by pass_ms(). Everything else that it can do is left out; using it
+// throws an exception.
 #pragma once
 
 #include <cstdint>
@@ -31,14 +31,14 @@ public:
   void damage(std::uint32_t address) { pairs_.at((address - kBegin) / 8).damaged = true; }
 
   std::optional<unsigned>
-      power_for;  // so many more pages or pairs of words; what comes then is spoiled
+      power_for;  // pages or pairs of words until the power is cut; the next one is spoiled
   unsigned operations = 0;
   std::map<std::uint32_t, unsigned> erased;  // how often, by page
   std::function<void()> nmi;
   unsigned nmis = 0;
-  bool of_bank_1 = false;  // … says that it was
-  bool stuck = false;      // what it is at never ends
-  bool answers = true;     // else its registers are 0 and nothing happens, as in QEMU
+  bool of_bank_1 = false;  // the damage is reported for bank 1
+  bool stuck = false;      // an operation never ends
+  bool answers = true;     // false: its registers are 0 and nothing happens, as in QEMU
 
   std::uint32_t read(std::uintptr_t address) override;
   void write(std::uintptr_t address, std::uint32_t value) override;
@@ -61,7 +61,7 @@ private:
   std::vector<Pair> pairs_;
   std::uint32_t access_ = 0x704, status_ = 0, control_ = 1U << 31, damage_ = 0;
   unsigned keys_ = 0;
-  std::optional<std::uint32_t> low_;  // written, and waits for the other one
+  std::optional<std::uint32_t> low_;  // the first word of a pair, waiting for the second
   std::uintptr_t low_at_ = 0;
   unsigned busy_us_ = 0;
   bool cache_is_stale_ = false;

@@ -18,7 +18,7 @@ constexpr std::uint32_t kRequestOfI2c = 3, kFunctionOfI2c = 4;
 
 }  // namespace
 
-// Of a pin that is an output: low only where it is open, or the device would drive against it.
+// An output may only be low as open drain, or the device would drive against it.
 bool Stm32I2c::pulls_low(unsigned pin) const {
   if ((pins_.at(0x00) >> 2 * pin & 3) != 1) return false;
   demand((pins_.at(0x04) >> pin & 1) != 0, "a line of a bus is driven high");
@@ -31,7 +31,7 @@ bool Stm32I2c::is_mode_of_master(unsigned pin) const {
          (pins_.at(pin < 8 ? 0x20 : 0x24) >> 4 * (pin % 8) & 0xF) == kFunctionOfI2c;
 }
 
-// Who pulls a line down does so, else it is up. An analog pin has no level.
+// A line is low if anything pulls it low, otherwise high. An analog pin has no level.
 std::uint32_t Stm32I2c::levels() const {
   std::uint32_t high = 0;
   const bool low[] = {holds_clock || pulls_low(wiring_.clock_pin),
@@ -60,7 +60,7 @@ bool Stm32I2c::interrupt() const {
          both(kEndInterrupt, kComplete) || both(kErrorInterrupt, kBusError | kArbitrationLost);
 }
 
-// A byte by DMA: where in memory; null when the channel gives and takes none.
+// The address in memory of the next byte by DMA; null if the channel transfers none.
 volatile std::byte* Stm32I2c::dma(unsigned number, bool from_memory, std::uint32_t data_register) {
   Channel& channel = channels_[number];
   if ((channel.control & 1) == 0 || channel.count == 0) return nullptr;
@@ -71,7 +71,7 @@ volatile std::byte* Stm32I2c::dma(unsigned number, bool from_memory, std::uint32
   }
   demand((dma_clock_ & 1) != 0, "DMA1 has no clock");
   demand((select_ >> 4 * (number - 1) & 0xF) == kRequestOfI2c, "the channel hears somebody else");
-  // Bytes, the memory's address goes on, the other's does not, and nobody begins again.
+  // Byte transfers; only the memory's address increments; not circular.
   demand((channel.control & 0x7FFE) == (from_memory ? 0x90U : 0x80U), "the channel is set wrong");
   demand(channel.peripheral == wiring_.base + data_register, "the channel is for something else");
   --channel.count;
@@ -80,7 +80,7 @@ volatile std::byte* Stm32I2c::dma(unsigned number, bool from_memory, std::uint32
   return memory + channel.moved++;
 }
 
-// As soon as there is room: the byte after the one that is being sent waits already.
+// Fetches as soon as there is room: one byte waits behind the one that is being sent.
 void Stm32I2c::fetch() {
   if (data_waits_ || (control_ & kSendByDma) == 0) return;
   if (const auto* const byte = dma(wiring_.send_channel, true, 0x28)) {
@@ -104,7 +104,7 @@ void Stm32I2c::start() {
 
 void Stm32I2c::refuse() {
   state_ |= kNack;
-  stop();  // by itself
+  stop();  // automatic
 }
 
 void Stm32I2c::stop() {
@@ -115,7 +115,7 @@ void Stm32I2c::stop() {
 void Stm32I2c::end_of_bytes() {
   if ((transfer_ & kAutoEnd) != 0) return stop();
   state_ |= kComplete;
-  phase_ = Phase::ended;  // the clock is held down until somebody says how it goes on
+  phase_ = Phase::ended;  // holds the clock low until the next command
 }
 
 // The address is the first byte of a message.
@@ -142,7 +142,7 @@ void Stm32I2c::read_byte() {
     volatile std::byte* const byte = dma(wiring_.read_channel, false, 0x24);
     const bool is_last = done_ == (transfer_ >> 16 & 0xFF);
     if (byte == nullptr && !is_last)
-      return;  // the clock is held down; the last one nobody waits for
+      return;  // holds the clock low; the last byte is not waited for
     if (byte != nullptr) *byte = registers[place_++];
   }
   if (done_ == (transfer_ >> 16 & 0xFF)) return end_of_bytes();
@@ -152,7 +152,7 @@ void Stm32I2c::read_byte() {
 void Stm32I2c::next_byte() {
   if (spurious_bus_error) state_ |= kBusError;
   spurious_bus_error = false;
-  if (another_master) {  // it is none any more, and nothing tells the end
+  if (another_master) {  // it has lost the bus, and no stop is reported
     another_master = false;
     state_ |= kArbitrationLost;
     phase_ = Phase::idle;
@@ -160,7 +160,7 @@ void Stm32I2c::next_byte() {
   }
   switch (phase_) {
     case Phase::sending:
-      if (done_ > 0 && !data_waits_) return fetch();  // the clock is held down
+      if (done_ > 0 && !data_waits_) return fetch();  // the clock is held low
       return send_byte();
     case Phase::reading:
       return read_byte();
@@ -183,7 +183,7 @@ void Stm32I2c::pass_microsecond() {
   next_byte();
 }
 
-// The software reset: what was set stays, all the rest is as after a reset.
+// The software reset: the configuration stays, everything else is as after a reset.
 void Stm32I2c::reset() {
   phase_ = Phase::idle;
   state_ = kEmpty;

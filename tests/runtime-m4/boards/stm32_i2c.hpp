@@ -1,7 +1,7 @@
-// A model of an I2C master of an STM32L475 with its two channels of DMA1, its two pins of port B, and one device on them; after ST's
-// reference manual (RM0351). Nothing of it knows the driver: addresses, fields and values stand here once more.
+// A model of an I2C master of an STM32L475 with its two channels of DMA1, its two pins of port B, and one device on them, from
+// ST's reference manual (RM0351). It is independent of the driver: addresses, fields and values are defined here again.
 //
-// Left out: all that they can do besides. Who uses it gets an exception.
+// Everything else that they can do is left out; using it throws an exception.
 #pragma once
 
 #include <cstddef>
@@ -25,18 +25,18 @@ public:
 
   // --- the device ---
   unsigned address = 0x6A;
-  // The first byte written says which, bit 7 is of no matter.
+  // The first byte written selects one, bit 7 is ignored.
   std::vector<std::byte> registers = std::vector<std::byte>(256);
-  unsigned refuses_after = ~0U;  // so many bytes of a message are acknowledged
+  unsigned refuses_after = ~0U;  // bytes of a message that are acknowledged
   bool holds_clock = false;
-  unsigned holds_data = 0;                      // until so many clocks have come
-  unsigned clocks = 0;                          // that came, besides those of transfers
-  std::vector<std::vector<std::byte>> written;  // messages, as they came
+  unsigned holds_data = 0;                      // clocks until it releases the data line
+  unsigned clocks = 0;                          // clocks outside of transfers
+  std::vector<std::vector<std::byte>> written;  // messages, in order
 
-  // --- what else may happen ---
+  // --- other events ---
   bool another_master = false;      // takes the bus at the next byte
   bool dma_fails = false;           // at the next byte; the channel is off then
-  bool spurious_bus_error = false;  // at the next byte (ES0250: of a master it says nothing)
+  bool spurious_bus_error = false;  // at the next byte (ES0250: meaningless for a master)
 
   void pass_microsecond();
   bool interrupt() const;
@@ -74,7 +74,7 @@ private:
   volatile std::byte* dma(unsigned number, bool from_memory, std::uint32_t data_register);
   void fetch();
 
-  static constexpr unsigned kByte = 24;  // microseconds of nine bits
+  static constexpr unsigned kByte = 24;  // microseconds for nine bits
 
   Wiring wiring_;
   std::map<std::uintptr_t, std::uint32_t> pins_{{0x00, 0xFFFF'FEBF}, {0x04, 0}, {0x0C, 0x100},

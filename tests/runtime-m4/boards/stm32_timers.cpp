@@ -14,7 +14,7 @@ constexpr std::uintptr_t kTimers = 0x4000'0000, kBetweenTimers = 0x400;
 constexpr std::uintptr_t kPorts = 0x4800'0000, kBetweenPorts = 0x400;
 constexpr std::uint32_t kPerMicrosecond = 80;
 
-// Which function of a pin is which channel (from 1) of which timer; DS10969, table 17.
+// The timer and channel (from 1) of each pin's function; DS10969, table 17.
 using Wired = std::tuple<char, unsigned, unsigned>;
 const std::map<Wired, std::pair<unsigned, unsigned>> kFunctions{
     {{'A', 0, 1}, {2, 1}},  {{'A', 0, 2}, {5, 1}},  {{'A', 1, 1}, {2, 2}}, {{'A', 1, 2}, {5, 2}},
@@ -31,7 +31,7 @@ const std::map<Wired, std::pair<unsigned, unsigned>> kFunctions{
 
 }  // namespace
 
-// An update event: what waited is at work, and a period begins.
+// An update event: preloaded values take effect, and a period begins.
 void Stm32Timers::Timer::update() {
   prescaler = prescaler_written;
   last = last_written;
@@ -104,7 +104,7 @@ void Stm32Timers::Timer::write(std::uintptr_t offset, std::uint32_t value) {
   if ((channel.mode & 1U << 3) == 0) channel.counts = value;
 }
 
-// In PWM mode 1; frozen, the mode out of reset, is low.
+// In PWM mode 1; frozen, the mode after reset, is low.
 bool Stm32Timers::Timer::high(unsigned channel) const {
   const Channel& it = channels[channel];
   if (!it.enabled || (it.mode >> 4 & 7) == 0) return false;
@@ -132,7 +132,7 @@ std::uint32_t* Stm32Timers::of_port(std::uintptr_t address) {
   }
 }
 
-// IDR: analog pins read 0. What nothing drives is as it is pulled: up (1) or down (2).
+// IDR: analog pins read 0. An undriven pin has the level of its pull: up (1) or down (2).
 std::uint32_t Stm32Timers::levels(char name) const {
   const Port& port = ports_.at(name);
   std::uint32_t levels = 0;
@@ -159,8 +159,8 @@ std::uint32_t Stm32Timers::read(std::uintptr_t address) {
   return has_clock(timer) ? timers_[timer].read((address - kTimers) % kBetweenTimers) : 0;
 }
 
-// What has no clock hears nothing.
-// BSRR: who is set and reset is set.
+// A peripheral without a clock ignores writes.
+// BSRR: set takes precedence over reset.
 void Stm32Timers::write_port(std::uintptr_t address, std::uint32_t value) {
   if ((address - kPorts) % kBetweenPorts != 0x18) {
     *of_port(address) = value;

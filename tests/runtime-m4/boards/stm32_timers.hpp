@@ -1,8 +1,8 @@
-// A model of what the pulses of an STM32L475 come from, after RM0351: the clocks of ports and timers (RCC), the functions of
-// pins and their levels (GPIO), outputs too, the timers 2 to 5 counting up in PWM mode 1, with what waits for the next period. Nothing of it knows
-// the driver: addresses, fields and the wiring of the pins stand here once more.
+// A model of the peripherals that make the pulses of an STM32L475, from RM0351: the clocks of ports and timers (RCC), the pins'
+// functions and levels, including outputs (GPIO), and timers 2 to 5 counting up in PWM mode 1, with preloaded values. It is
+// independent of the driver: addresses, fields and the wiring of the pins are defined here again.
 //
-// Left out: everything else these peripherals can do. Who uses it gets an exception.
+// Everything else that these peripherals can do is left out; using it throws an exception.
 #pragma once
 
 #include <array>
@@ -24,15 +24,15 @@ public:
   void write(std::uintptr_t address, std::uint32_t value) override;
 
   Level level(Pin pin) const;
-  // What is wired to the pin gives it this level, or none.
+  // The wire at the pin drives this level, or none.
   void wire(Pin pin, std::optional<bool> high) { wired_[pin] = high; }
   // One microsecond passes, for timers whose prescaler makes that one count at 80 MHz. Throws for others.
   void pass_microsecond();
 
 private:
   struct Channel {
-    std::uint32_t written = 0;  // compare, as it is read back
-    std::uint32_t counts = 0;   // compare, as it is at work
+    std::uint32_t written = 0;  // compare, as read back
+    std::uint32_t counts = 0;   // compare, as in effect
     std::uint32_t mode = 0;     // the byte of CCMR
     bool enabled = false;
   };
@@ -60,7 +60,7 @@ private:
 
   std::uint32_t port_clocks_ = 0, timer_clocks_ = 0;
   std::array<Timer, 4> timers_;  // 2 to 5
-  // As they come out of reset: all analog, but for what belongs to the debugger.
+  // Their reset values: all analog, except the debugger's pins.
   std::map<char, Port> ports_{{'A', {0xABFF'FFFF, 0x6400'0000, 0x0C00'0000, {}}},
                               {'B', {0xFFFF'FEBF, 0x0000'0100, 0, {}}},
                               {'C', {0xFFFF'FFFF, 0, 0, {}}},

@@ -1,5 +1,5 @@
-// The pins of a board with this chip, as they are shipped, against the model of the chip's timers: what comes out of each. Which
-// board it is says ROBOSYNC_TEST_WIRES: the program is made for each of them.
+// The shipped code for the pins of a board with this chip, against the model of the chip's timers: the output of each pin.
+// ROBOSYNC_TEST_WIRES selects the board: this program is built for each of them.
 #include <map>
 #include <random>
 #include <vector>
@@ -31,7 +31,7 @@ std::vector<std::uint16_t> outputs() {
   return found;
 }
 
-// The chip, started as the board starts it, and never with a pin high on the way.
+// The chip, started as the board starts it. No pin may be high during the start.
 struct Chip : Stm32Timers {
   Chip() {
     boards::stm32l4::rcc::kAhb2.set(boards::stm32l4::rcc::kPortsAToD);
@@ -42,7 +42,7 @@ struct Chip : Stm32Timers {
     Stm32Timers::write(address, value);
     for (const auto& [number, pin] : kHeader)
       if (starting) CHECK(level(pin) != Level::high);
-    CHECK((!starting || level(kA5) != Level::low));  // a servo chip is never on by chance
+    CHECK((!starting || level(kA5) != Level::low));  // a servo chip is never on by accident
     for (const Stm32Timers::Pin& pin : kAwake)
       CHECK((!starting || level(pin) != Level::low));
   }
@@ -51,7 +51,7 @@ struct Chip : Stm32Timers {
     while (us-- > 0)
       pass_microsecond();
   }
-  // How long the pin is high in the next so many microseconds.
+  // How long the pin is high in the next `us` microseconds.
   unsigned high_time(std::uint16_t pin, unsigned us = kFrame) {
     const Stm32Timers::Pin asked = kHeader.at(pin);
     unsigned time = 0;
@@ -61,7 +61,7 @@ struct Chip : Stm32Timers {
     }
     return time;
   }
-  // The same of each pin.
+  // The same for each pin.
   std::map<std::uint16_t, unsigned> high_times(unsigned us = kFrame) {
     std::map<std::uint16_t, unsigned> times;
     while (us-- > 0) {

@@ -1,5 +1,5 @@
-// The clock on a board that has SysTick only, as it is shipped, against a model of SysTick (ARMv7-M manual, B3.3): it says how
-// many counts have passed, whatever sleeps and wakes.
+// The shipped clock for a board that has only SysTick, against a model of SysTick (ARMv7-M manual, B3.3): it returns the number
+// of counts that have passed, whatever sleeps and wakes.
 #include "runtime-m4/port/cortex-m4/systick.hpp"
 
 #include <random>
@@ -60,21 +60,21 @@ public:
       if (current_ == 0) begun_again_ = pending = true;
     }
   }
-  // The interrupt comes once, and is told.
+  // The interrupt comes, and is reported once.
   bool strike() { return std::exchange(pending, false); }
 
   std::uint64_t passed = 0;
   bool pending = false;
 
 private:
-  // It takes a few counts, or none: a slow clock.
+  // An access takes a few counts, or none: a slow clock.
   void access() { pass(accesses_++ % 4); }
 
   std::uint32_t control_ = 0, reload_ = 0, current_ = 0, accesses_ = 0;
   bool begun_again_ = false;
 };
 
-// What tick.cpp does with it, and whether the clock is right and never goes back.
+// Uses it as tick.cpp does, and checks that the clock is right and never goes back.
 struct Run {
   SysTick chip;
   std::mt19937 random;
@@ -84,7 +84,7 @@ struct Run {
   unsigned restarts = 0;
 
   explicit Run(unsigned seed) : random(seed) {
-    strikes::sleep_for(2 * kTick);  // the state is one for all runs
+    strikes::sleep_for(2 * kTick);  // all runs share the state
     strikes::begin(kTick);
     begin_clock = last = robosync_read_clock();
     begin_passed = chip.passed;
@@ -99,7 +99,7 @@ struct Run {
     const auto true_count = static_cast<std::int64_t>(chip.passed - begin_passed);
     most_off = std::max(most_off, std::abs(said - true_count));
   }
-  // Threads run, and look at the clock now and then; SysTick's handler is held off for a while.
+  // Threads run and read the clock now and then; SysTick's handler is delayed for a while.
   void work() {
     for (unsigned i = drawn(6); i > 0; --i) {
       chip.pass(drawn(kTick / 3));
@@ -110,7 +110,7 @@ struct Run {
       if (drawn(2) == 0) look();
     }
   }
-  // Up to the end, or an interrupt comes before, or the core is late.
+  // Until the end, or an earlier interrupt, or the core wakes late.
   void sleep() {
     const std::uint32_t counts = 1 + drawn(40 * kTick);
     look();
@@ -132,7 +132,7 @@ TEST_CASE("while threads run the clock says exactly what has passed") {
     while (run.chip.passed < 0x8000'0000 / 16) {
       run.work();
       run.look();
-      strikes::sleep_for(1 + run.drawn(kTick));  // ends with the next tick: nothing is begun anew
+      strikes::sleep_for(1 + run.drawn(kTick));  // ends with the next tick: nothing is restarted
       strikes::begin(1 + run.drawn(kTick));
     }
     CHECK(run.most_off <= 8);  // an access or two

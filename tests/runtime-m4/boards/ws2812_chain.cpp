@@ -30,7 +30,7 @@ void Ws2812Chain::hear(bool high, unsigned ns) {
   end_picture();
 }
 
-// A bit behind which silence comes has as long a low as it wants.
+// The last bit before silence may have any low time.
 void Ws2812Chain::end_bit(bool silence) {
   std::optional<bool> bit;
   if (is_about(high_ns_, 400) && (silence || is_about(low_ns_, 850))) bit = false;
@@ -40,7 +40,7 @@ void Ws2812Chain::end_bit(bool silence) {
   high_ns_ = 0;
 }
 
-// Green comes first, and the highest bit of each. Who has not got all of its bits stays as it is.
+// Green comes first, most significant bit first. A light that has not received all of its bits does not change.
 void Ws2812Chain::end_picture() {
   if (bits_.empty()) return;
   ++pictures_;

@@ -1,5 +1,5 @@
-// A chain of WS2812 lights, after Worldsemi's data sheet of the WS2812B: "Data transfer time", "Sequence chart" and "Cascade method".
-// Nothing of it knows the driver.
+// A model of a chain of WS2812 lights, from Worldsemi's data sheet of the WS2812B: "Data transfer time", "Sequence chart" and
+// "Cascade method". It is independent of the driver.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,13 @@ class Ws2812Chain {
 public:
   explicit Ws2812Chain(std::size_t lights) : shown_(lights) {}
 
-  // The level of its line in the next so many nanoseconds.
+  // The level of its line for the next `ns` nanoseconds.
   void hear(bool high, unsigned ns);
 
   // 0xRRGGBB of each, the first one in the chain first.
   const std::vector<std::uint32_t>& shown() const { return shown_; }
-  unsigned pictures() const { return pictures_; }  // that have come to an end
-  unsigned disturbed() const {
-    return disturbed_;
-  }  // bits whose times are not those of the data sheet
+  unsigned pictures() const { return pictures_; }    // complete ones
+  unsigned disturbed() const { return disturbed_; }  // bits whose times violate the data sheet
 
 private:
   void end_bit(bool silence);

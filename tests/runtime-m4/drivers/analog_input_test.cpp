@@ -1,4 +1,4 @@
-// Analog inputs: from counts to readings, what is known of one that does not answer, and who has a pin that may be an output, too.
+// Analog inputs: from counts to readings, one that does not answer, and the use of a pin that may be an output, too.
 #include <array>
 
 #include <catch2/catch.hpp>
@@ -169,7 +169,7 @@ TEST_CASE(
   rings.guard.drive(0, 1500, 0);
   CHECK(rings.board.pulses[0].back() == 1500);
   rings.guard.own(zero);
-  CHECK(rings.board.pulses[0].back() == 0);  // off, before it is let go
+  CHECK(rings.board.pulses[0].back() == 0);  // off, before let_go()
   CHECK(rings.handed() == Rings::Handed{{0, true}});
   rings.guard.disown();
   CHECK(rings.handed() == Rings::Handed{{0, false}});

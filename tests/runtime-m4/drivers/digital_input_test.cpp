@@ -1,4 +1,4 @@
-// Buttons and switches: from the level of a pin to readings, and what is left of a contact that bounces.
+// Buttons and switches: from the level of a pin to readings, and the debouncing of contacts.
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -13,7 +13,7 @@ using test::Rig;
 namespace {
 
 constexpr std::uint64_t kMillisecond = 1000;
-// What the data sheets of push buttons and switches promise at most is 5 to 15 ms.
+// Data sheets of push buttons and switches specify at most 5 to 15 ms.
 constexpr std::uint64_t kBouncing = 18 * kMillisecond;
 constexpr std::uint64_t kBetweenSamples = 20 * kMillisecond;
 
@@ -34,7 +34,7 @@ std::vector<std::string> logs(const Rig& rig) {
   return said;
 }
 
-// A contact to ground on a pin that is pulled up. While it bounces the level is whatever it is.
+// A contact to ground on a pin that is pulled up. While it bounces, the level is random.
 struct Contact {
   std::uint64_t closes, opens;
   std::uint32_t seed;

@@ -1,4 +1,4 @@
-// Drivers on a board that notes what they do; from raw counts to values; from commands to orders.
+// Drivers on a board that records what they do; from raw counts to values; from commands to orders.
 #include "runtime-m4/drivers/drivers.hpp"
 
 #include <catch2/catch.hpp>
@@ -35,13 +35,13 @@ Order order(vm::Action action, std::initializer_list<std::pair<Param, Value>> pa
   return result;
 }
 
-// An actuator driven without a kernel: time goes to where the driver wants to be called next.
+// An actuator driven without a kernel: time advances to the driver's next call.
 struct Drive {
   explicit Drive(vm::DriverId id, Value min, Value max, Value speed_limit = vm::kValueMax)
       : driver(drivers::driver(id)) {
     wiring.driver = id;
     wiring.pin = 7;
-    wiring.bus = 8;  // of what has two pins: the second one
+    wiring.bus = 8;  // the second pin, for actuators with two
     wiring.min = min;
     wiring.max = max;
     wiring.speed_limit = speed_limit;
@@ -55,13 +55,13 @@ struct Drive {
   // Until the command is done, or `until`.
   void run(kernel::Time until = kernel::kForever) {
     while (wake != drivers::kDone && wake <= until) {
-      REQUIRE(wake > now);  // else it would never come to an end
+      REQUIRE(wake > now);  // otherwise it would never end
       now = wake;
       wake = driver.advance(device(), now);
     }
   }
   std::uint32_t pulse() const { return board.pwm_read(7); }
-  // Of what has two pins: below 0 on the second one.
+  // For actuators with two pins: negative on the second one.
   int power() const { return static_cast<int>(pulse()) - static_cast<int>(board.pwm_read(8)); }
   std::size_t setpoints() const {
     const auto found = board.pulses.find(7);
@@ -254,7 +254,7 @@ TEST_CASE("servo: hold, rest, coast; a servo never driven has nothing to hold") 
   CHECK(servo.pulse() == 1500);  // 0 deg
 }
 
-// --- orders that are drawn ---
+// --- random orders ---
 
 Value drawn_number() {
   return *rc::gen::weightedOneOf<Value>(
@@ -267,7 +267,7 @@ Drive drawn_drive(vm::DriverId driver) {
   return Drive(driver, min, max, std::max(drawn_number(), 0));
 }
 
-// Some orders, each of which must end. `promised` makes of what was drawn what the control layer hands on.
+// Random orders, each of which must end. `promised` turns a random order into one that the control layer can hand on.
 template <typename Promised>
 void obey_drawn(Drive& drive, vm::Action verb, Promised promised) {
   for (int i = 0; i < 4; ++i) {

@@ -1,4 +1,4 @@
-// What the ear makes of sounds of which one knows what they are.
+// The ear's results for known sounds.
 #include "runtime-m4/drivers/ear.hpp"
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using Block = std::array<std::int16_t, kEarBlock>;
 
-// So many blocks of it, one after the other; what is heard of the last one.
+// Plays `blocks` blocks of the sound in a row; returns what is heard in the last one.
 template <class Sound>
 Heard after(int blocks, Sound sound) {
   Ear ear;
@@ -38,7 +38,7 @@ Heard tone(double hertz, double height) {
   });
 }
 
-// Tones at its multiples.
+// A sound with these harmonics.
 Heard made_of(double hertz, std::initializer_list<double> heights) {
   return after(4, [=](int i) {
     double sum = 0, number = 0;
@@ -92,7 +92,8 @@ TEST_CASE("a tone has its pitch to a hundredth, deep voices and whistles alike")
 }
 
 TEST_CASE("a sound that is nearly there again after half its time has the pitch of the whole") {
-  // Two tones, an octave apart: after half the time of the lower one it is as much like itself as the higher one is louder.
+  // Two tones an octave apart: shifted by half the lower one's period, the sound resembles itself the more, the louder the higher
+  // one is.
   for (double hertz = 90; hertz < 400; hertz *= 1.031) {
     INFO(hertz);
     const Heard heard = made_of(hertz, {0.45, 1});  // 0.66

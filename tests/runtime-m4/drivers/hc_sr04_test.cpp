@@ -1,4 +1,4 @@
-// The ultrasonic sensor: from the length of an echo to readings, when it is asked, and what is known of one that says nothing.
+// The ultrasonic sensor: from the length of an echo to readings, when it is asked, and a sensor that does not answer.
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/drivers/drivers.hpp"
@@ -34,7 +34,7 @@ constexpr std::uint32_t kOneMetre = 5831;  // us, there and back at 343 m/s
 constexpr vm::Limits kEverything{};
 using Pings = std::vector<std::pair<std::uint16_t, std::uint16_t>>;
 
-// Notes when it is asked and when it is sampled, in ms.
+// Records when it is asked and when it is sampled, in ms.
 struct Robot {
   explicit Robot(const std::string& program = kOfSonar, const char* wiring = kWithSonar) {
     rig.board.echo_us = [this](std::uint16_t echo) {

@@ -1,6 +1,6 @@
-// An HTS221 as public drivers of it describe ST's data sheet (DocID026333), which was not at hand, without a look at our driver:
-// registers and their values at power-up, auto-increment by bit 7 of the register's number, power-down and the rates of
-// CTRL_REG1, BDU, the data-available bits of STATUS_REG, and the two points of its calibration, which outlast a loss of power.
+// A model of an HTS221, written from public drivers, since ST's data sheet (DocID026333) was not at hand, and independent of our
+// driver: registers and their values at power-up, auto-increment by bit 7 of the register's number, power-down and the rates of
+// CTRL_REG1, BDU, the data-available bits of STATUS_REG, and the two points of its calibration, which survive a loss of power.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace robosync::test {
 class Hts221 {
 public:
   struct
-      Points {  // of one of both: what it is in halves of a percent or eighths of a degree, and the counts there
+      Points {  // of one quantity: its values in half percents or eighths of a degree, and the counts there
     int low, high;
     std::int16_t low_count, high_count;
   };
@@ -51,7 +51,7 @@ public:
   void set_control(std::uint8_t value) { write(kControl, value); }
   bool is_on() const { return (control() & 0x80) != 0 && (control() & 3) != 0; }
 
-  // Of a part that somebody has in his hand: 20 and 80 %, 10 and 35 °C. The counts of humidity fall in some of these, too.
+  // Of a real part: 20 and 80 %, 10 and 35 °C. In some parts the counts of humidity are descending.
   Points humidity_points{40, 160, -4000, 6000};
   Points temperature_points{80, 280, 300, 700};
   double humidity = 50, temperature = 20;                         // %, °C
@@ -87,7 +87,7 @@ private:
     const auto low = [](std::int16_t word) { return static_cast<std::uint8_t>(word & 0xFF); };
     const auto high = [](std::int16_t word) { return static_cast<std::uint8_t>(word >> 8 & 0xFF); };
     const auto byte = [](int value) { return static_cast<std::uint8_t>(value & 0xFF); };
-    constexpr std::uint8_t kReserved = 0xA5;  // nobody says what is there
+    constexpr std::uint8_t kReserved = 0xA5;  // undocumented
     const std::array<std::uint8_t, 16> bytes{
         byte(h.low),       byte(h.high),
         byte(t.low),       byte(t.high),

@@ -1,4 +1,4 @@
-// The hygrometer and thermometer that brings its calibration with it: from counts to thousandths, and what is no reading.
+// The hygrometer and thermometer with its own calibration: from counts to thousandths, and counts that are not a reading.
 #include <cmath>
 #include <random>
 #include <utility>
@@ -36,7 +36,7 @@ struct AirReader {
     channel.input = static_cast<std::uint8_t>(input);
     return drivers::driver(vm::DriverId::hts221).read(board, sensor, channel, raw);
   }
-  // A period, and then a sample.
+  // Waits a period, then takes a sample.
   bool read(unsigned input) {
     chip.clock_ms += kAirPeriodMs;
     return ask(input);
@@ -54,7 +54,7 @@ struct AirReader {
   std::int32_t raw = 77;
 };
 
-// As the data sheet says it, in thousandths.
+// According to the data sheet, in thousandths.
 double interpolated(const Hts221::Points& points, double steps_each, int count, double least,
                     double most) {
   const double low = points.low / steps_each, high = points.high / steps_each;
@@ -158,7 +158,7 @@ TEST_CASE("hts221: counts of 0 are a reading when they are new") {
   reader.chip.humidity_count = reader.chip.temperature_count = 0;
   REQUIRE(reader.read(kHumidityInput));
   CHECK(reader.raw == 44'000);
-  CHECK_FALSE(reader.ask(kHumidityInput));  // they are no longer
+  CHECK_FALSE(reader.ask(kHumidityInput));  // no longer valid
   REQUIRE(reader.read(kTemperatureInput));
   CHECK(reader.raw == -8'750);
 }
@@ -168,7 +168,7 @@ TEST_CASE("hts221: a loss of power is noticed and mended, and nothing wrong is r
   reader.start();
   reader.chip.lose_power();
   reader.chip.humidity = 70;
-  // Another part in its place has other points.
+  // A replacement part has other points.
   reader.chip.humidity_points = {30, 150, 9000, -9000};
   CHECK_FALSE(reader.read(kHumidityInput));
   CHECK_FALSE(reader.ask(kHumidityInput));
@@ -223,7 +223,7 @@ TEST_CASE("hts221: no answer is no reading, be it to the first, the second or th
     CHECK(asked == kAirReads);
     CHECK(reader.raw == 77);
   }
-  // Where the bus works by itself: asked for the same as when it is due, and told nothing.
+  // On a bus that works in the background: the driver asks ahead for the same reads as when it is due, and writes nothing.
   reader.board.on_bus = [](std::uint8_t, std::uint8_t, std::span<const std::byte>,
                            std::span<std::byte> in) { return in.empty(); };
   reader.take_transfers();
@@ -241,7 +241,7 @@ TEST_CASE("hts221: no answer is no reading, be it to the first, the second or th
 
 TEST_CASE("hts221: its transfers are as many as are declared of it, and as long") {
   AirReader reader;
-  reader.read(kHumidityInput);  // with what it is told
+  reader.read(kHumidityInput);  // including the writes
   const Transfers transfers = reader.take_transfers();
   const test::Declared said = test::declared_of(vm::DriverId::hts221);
   CHECK(transfers.size() == said.transfers);
@@ -284,7 +284,7 @@ WHEN air TEMPERATURE < -5C DO LOG "frost" END
   CHECK((logged("damp") == 1 && logged(" log ") == 1));
   pass(75, 30, 500);
   CHECK((logged("warm") == 1 && logged(" log ") == 1));
-  pass(-3, -6, 500);  // as the line goes on below 0 %
+  pass(-3, -6, 500);  // the line continues below 0 %
   CHECK((logged("dry") == 1 && logged("frost") == 1));
   chip.lose_power();
   chip.absent = true;

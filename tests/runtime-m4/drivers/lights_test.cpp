@@ -1,4 +1,4 @@
-// Lights: pictures, how long they stay, and that they are dark whenever nobody may show one.
+// Lights: pictures, how long they stay, and that they are dark whenever nothing may be shown.
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -144,7 +144,7 @@ TEST_CASE("lights: the guard shows nothing for whom it has halted, nor for who h
   const auto wiring = test::servo_and(vm::DriverId::lights, vm::Release::rest);
   vm::Image image;
   image.actuators = wiring;
-  outputs.show(1, 7);  // nobody owns them yet
+  outputs.show(1, 7);  // no program owns them yet
   outputs.own(image);
   outputs.show(0, 7);
   CHECK(board.pictures.empty());

@@ -1,4 +1,4 @@
-// The accelerometer LSM303AGR, by a device that has its registers: woken when it is asleep, counts to g, however it lies.
+// The accelerometer LSM303AGR, with a model of its registers: woken when it is asleep, from counts to g, in any position.
 #include <cmath>
 #include <random>
 
@@ -130,7 +130,7 @@ TEST_CASE("lsm303agr: a program knows how the robot is held, that it is shaken, 
   rig.run(200);
   CHECK(logged(rig, "right") == 1);
   CHECK(logged(rig, "forward") == 1);
-  device.lie(1.6, 1.6, 1.6);  // no axis alone says so
+  device.lie(1.6, 1.6, 1.6);  // visible in no single axis
   rig.run(300);
   CHECK(logged(rig, "shaken") == 1);
   device.lie(0.05, 0, 0.05);

@@ -1,6 +1,6 @@
-// A PCA9685 as NXP's product data sheet (Rev. 4) says it, without a look at the driver: registers and their values at power-up
-// (7.3, tables 4 to 8), auto-increment (7.2), sleep and RESTART (7.3.1), outputs that change with the STOP (7.3.2, OCH = 0),
-// the prescaler (7.3.5), OE (7.4).
+// A model of a PCA9685, written from NXP's product data sheet (Rev. 4), independent of the driver: registers and their values at
+// power-up (7.3, tables 4 to 8), auto-increment (7.2), sleep and RESTART (7.3.1), outputs that change with the STOP (7.3.2,
+// OCH = 0), the prescaler (7.3.5), OE (7.4).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class Pca9685 {
 public:
   static constexpr unsigned kOutputs = 16;
 
-  // The chip at `address`, whose OE is at the level that `oe_high` says; `now` in microseconds.
+  // The chip at `address`; `oe_high` returns the level of OE, `now` the time in microseconds.
   Pca9685(std::uint8_t address, std::function<bool()> oe_high, std::function<std::uint64_t()> now)
       : address_(address), oe_high_(std::move(oe_high)), now_(std::move(now)) {
     lose_power();
@@ -31,7 +31,7 @@ public:
     latch();
   }
 
-  // START, the bytes, STOP. False: it has not acknowledged one of them.
+  // START, the bytes, STOP. False: it did not acknowledge one of them.
   bool transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
     const bool called = address == kAllAddress && (registers_[kMode1] & kAllCall) != 0;
     if (absent || (address != address_ && !called)) return false;
@@ -72,7 +72,7 @@ public:
   std::uint8_t at(std::uint8_t place) const { return registers_[place]; }
   bool is_off(unsigned n) const { return (outputs_[n].off & kFull << 8) != 0; }
 
-  bool absent = false;  // it has no power, or its wire is off
+  bool absent = false;  // it has no power, or is disconnected
   std::size_t disturbed_bytes =
       0;  // the byte of each transfer, from 1 on, that is not acknowledged
 
@@ -101,7 +101,7 @@ private:
         registers_[kLed0 + 4 * n + (place - kAllLeds)] = value;
     if (place >= kLed0 && (place <= kLastLed || place >= kAllLeds)) output_written_ = true;
   }
-  // RESTART is set by the chip, where it is put to sleep in the midst of pulses, and cleared by a 1.
+  // The chip sets RESTART when it is put to sleep during pulses; writing 1 clears it.
   void write_mode(std::uint8_t value) {
     std::uint8_t restart = registers_[kMode1] & kRestart;
     const bool falls_asleep = !sleeps() && (value & kSleep) != 0;
@@ -119,7 +119,7 @@ private:
     else
       ++pointer_;
   }
-  // With the STOP.
+  // At the STOP.
   void latch() {
     for (unsigned n = 0; n < kOutputs; ++n) {
       const std::size_t first = kLed0 + 4 * n;

@@ -1,4 +1,4 @@
-// Servos on a PCA9685, by a model of its registers: what comes out of the chip in each millisecond, whatever the bus, the chip
+// Servos on a PCA9685, with a model of its registers: the chip's outputs in each millisecond, whatever the bus, the chip
 // and the program do.
 #include <cmath>
 #include <map>
@@ -44,7 +44,7 @@ WHEN near X > 20 AND near X < 30 DO MOVE right TO 180deg AT 180deg/s END
 WHEN near X > 30 DO MOVE left TO 45deg AT 180deg/s END
 )";
 
-// A rig with chips on its bus 0. What a chip puts out is looked at in each millisecond.
+// A rig with chips on its bus 0. The chips' outputs are checked in each millisecond.
 struct ChipRig {
   explicit ChipRig(bool works_by_itself = false) {
     add(0x40, kEnable);
@@ -72,7 +72,7 @@ struct ChipRig {
       answered = chip->transfer(address, out, in) || answered;
     return answered;
   }
-  // As Board says of buses that work by themselves.
+  // Behaves like a bus that works in the background (boards::Board).
   bool later(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
     const std::pair key(address, std::vector<std::byte>(out.begin(), out.end()));
     if (rig.board.asked_ahead) {
@@ -93,7 +93,7 @@ struct ChipRig {
     REQUIRE(rig.activate(test::compile(rsl, json)).ok());
     rig.feed(1, 0);  // no wall, for those that have SAFETY
   }
-  // No output ever gives a pulse that no servo takes.
+  // No output may ever give a pulse that a servo cannot take.
   void run(std::uint64_t ms) {
     const std::uint64_t end = rig.kernel.now() / 1000 + ms;
     for (std::uint64_t at = rig.kernel.now() / 1000; at <= end; ++at) {
@@ -136,7 +136,7 @@ TEST_CASE("pca9685: it is set up before it is let on, and moves at the speed tha
     robot.begin();
     robot.run(100);
     CHECK_FALSE(robot.chip().sleeps());
-    CHECK_FALSE(robot.is_on());  // nobody has said where to go
+    CHECK_FALSE(robot.is_on());  // there has been no command yet
     robot.order(11);
     robot.run(250);
     CHECK(robot.is_on());
@@ -203,19 +203,19 @@ TEST_CASE(
   CHECK_FALSE(robot.is_on());
   CHECK(robot.rig.board.transfers.empty());
   robot.run(100);
-  CHECK(robot.chip().is_off(3));  // and not by that pin alone
+  CHECK(robot.chip().is_off(3));  // not only by the enable pin
   CHECK(robot.chip().is_off(12));
   robot.order(31);
   robot.run(200);
   CHECK_FALSE(robot.is_on());
   robot.rig.runtime.resume();
   robot.run(200);
-  CHECK_FALSE(robot.is_on());  // nothing moves by that
+  CHECK_FALSE(robot.is_on());  // that moves nothing
   robot.order(31);
   robot.run(1000);
   CHECK(robot.is_on());
   CHECK(about(robot.pulse(3), 1000));
-  CHECK(robot.pulse(12) == 0);  // it waits for an order of its own
+  CHECK(robot.pulse(12) == 0);  // it waits for its own order
 }
 
 TEST_CASE("pca9685: a SAFETY rule that stops one of its servos makes all of them limp") {
@@ -227,7 +227,7 @@ TEST_CASE("pca9685: a SAFETY rule that stops one of its servos makes all of them
   robot.rig.feed(1, 60);
   robot.rig.run(robot.rig.kernel.now() / 1000);
   CHECK_FALSE(robot.is_on());
-  robot.order(21);  // the other one is not halted, yet its chip is
+  robot.order(21);  // the other actuator is not halted, but its chip is
   robot.run(300);
   CHECK_FALSE(robot.is_on());
   CHECK(robot.pulse(12) == 0);
@@ -258,7 +258,7 @@ TEST_CASE("pca9685: without a program that has it, it is off") {
   CHECK_FALSE(robot.is_on());
   robot.run(200);
   CHECK_FALSE(robot.is_on());
-  CHECK(robot.chip().is_off(3));  // it was set up for the new program, which has not that one
+  CHECK(robot.chip().is_off(3));  // set up for the new program, which does not have that one
   robot.order(60);
   robot.run(200);
   CHECK(robot.is_on());
@@ -286,7 +286,7 @@ TEST_CASE("pca9685: one that does not answer is told of, is off, and the program
     robot.run(500);
     CHECK(robot.said("answers"));
     CHECK_FALSE(robot.chip().sleeps());
-    CHECK_FALSE(robot.is_on());  // an order of long ago moves nobody's arm
+    CHECK_FALSE(robot.is_on());  // an old order moves nothing
     robot.order(31);
     robot.run(500);
     CHECK(robot.is_on());
@@ -314,7 +314,7 @@ TEST_CASE(
   CHECK(about(robot.pulse(3), 1000));
 }
 
-// What was written so far may be at work: half of a pulse's count.
+// The bytes written so far may take effect: half of a pulse's count.
 TEST_CASE("pca9685: a pulse that was not taken whole is said again at once, and not for ever") {
   for (std::size_t byte = 1; byte <= 3; ++byte) {
     ChipRig robot;
@@ -400,7 +400,7 @@ TEST_CASE("pca9685: a chip whose thread was stopped is off, and one whose progra
   CHECK_FALSE(other.is_on());
 }
 
-// Whatever happens, in any order: the enable pin is low only while somebody may drive, and what comes out is a servo's.
+// Whatever happens, in any order: the enable pin is low only while outputs may be driven, and all pulses are valid for a servo.
 TEST_CASE("pca9685: drawn lives") {
   std::mt19937 random(9685);
   for (unsigned life = 0; life < 60; ++life) {
@@ -431,7 +431,7 @@ TEST_CASE("pca9685: drawn lives") {
   }
 }
 
-// ---- what no image does
+// ---- what no image can do
 
 namespace {
 
@@ -488,7 +488,7 @@ TEST_CASE(
           right.bus = left.bus;
           right.pin = left.pin;
         }) == Refusal::shared_pin);
-  // A pin of a chip's enable input is nobody else's.
+  // A pin at a chip's enable input has no other use.
   CHECK(refused([](auto&, auto&, auto& left, auto&) {
           left.driver = vm::DriverId::servo;
           left.pin = 36;

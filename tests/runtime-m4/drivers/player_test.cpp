@@ -1,4 +1,4 @@
-// A sound player: what it is told, when, and silence whenever nobody may sound. tests/e2e/test_sound.py sees it on the line.
+// A sound player: its commands, their times, and silence whenever it may not sound. tests/e2e/test_sound.py checks the line.
 #include "runtime-m4/policy/player.hpp"
 
 #include <catch2/catch.hpp>
@@ -27,7 +27,7 @@ std::vector<unsigned> bytes_of(const policy::PlayerCommand& command) {
   return bytes;
 }
 
-// What the board's line was told; each command is one that the player knows.
+// The sounds sent on the board's line; the player must know each command.
 std::vector<unsigned> sounds_of(const test::NotingBoard& board) {
   std::vector<unsigned> sounds;
   for (const auto& [line, command] : board.said) {
@@ -47,7 +47,7 @@ struct Speaking {
     rig.run(at);
     rig.feed(0, 20);
   }
-  // After so many milliseconds more.
+  // All of them, after `milliseconds` more.
   std::vector<unsigned> told_after(unsigned milliseconds) {
     rig.run(at += milliseconds);
     return sounds_of(rig.board);
@@ -134,7 +134,7 @@ TEST_CASE(
   REQUIRE(
       again.rig.activate(test::compile("AT START\nDO\nPLAY sound \"two.wav\"\nEND\n", kPlayerRobot))
           .ok());
-  CHECK(sounds_of(again.rig.board) == Told{0, 1});  // the one may take the other's place
+  CHECK(sounds_of(again.rig.board) == Told{0, 1});  // the second may replace the first
   again.rig.run(again.at + kGap + 2 * kLook);
   CHECK(sounds_of(again.rig.board) == Told{0, 1, 2});
 }
@@ -152,7 +152,7 @@ TEST_CASE("player: the guard tells nothing for whom it has halted, nor for who h
     outputs.go_on(now += kernel::milliseconds(2 * kGap));
     return sounds_of(board);
   };
-  outputs.play(1, 7);  // nobody owns it yet
+  outputs.play(1, 7);  // no program owns it yet
   CHECK(tell().empty());
   outputs.own(image);
   CHECK(tell() == Told{0});
@@ -166,7 +166,7 @@ TEST_CASE("player: the guard tells nothing for whom it has halted, nor for who h
   outputs.let_go(0b10);
   CHECK(tell() == Told{0, 7, 0});
   outputs.play(1, 9);
-  outputs.halt(0b10);  // before it was told
+  outputs.halt(0b10);  // before the command was sent
   outputs.let_go(0b10);
   CHECK(tell() == Told{0, 7, 0, 0});
   outputs.disown();
@@ -176,7 +176,7 @@ TEST_CASE("player: the guard tells nothing for whom it has halted, nor for who h
   outputs.own(image);
   outputs.play(1, 5);
   CHECK(tell() == Told{0, 7, 0, 0, 0, 5});
-  outputs.disown();  // in its midst
+  outputs.disown();  // during the sound
   CHECK(sounds_of(board) == Told{0, 7, 0, 0, 0, 5, 0});
 }
 

@@ -1,5 +1,5 @@
-// Models of chips with an accelerometer and a gyroscope: their registers, which go on from one to the next, and what they
-// measure, which stands there a while after they were switched on, and not before.
+// Models of chips with an accelerometer and a gyroscope: their registers, with auto-increment, and their measurements, which
+// are valid only some time after the chip was switched on.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace robosync::test {
 
-inline constexpr unsigned kSixAxes = 6;  // acceleration along X, Y and Z; turning about them
+inline constexpr unsigned kSixAxes = 6;  // acceleration along X, Y and Z; rotation about them
 constexpr bool turns(unsigned axis) {
   return axis >= 3;
 }
@@ -36,11 +36,11 @@ public:
   virtual void lose_power() = 0;
   virtual bool is_as_told() const = 0;
   virtual std::vector<std::size_t> settings() const = 0;  // their registers
-  virtual double counts_each(unsigned axis) const = 0;    // g or deg/s, as it is set
+  virtual double counts_each(unsigned axis) const = 0;    // per g or deg/s, in the range set
 
   std::array<std::byte, 0x80> registers{};
   std::array<double, kSixAxes> motion{0, 0, 1, 0, 0, 0};           // g, deg/s
-  std::optional<std::array<std::int32_t, kSixAxes>> exact_counts;  // in its place
+  std::optional<std::array<std::int32_t, kSixAxes>> exact_counts;  // instead of `motion`
   bool answers = true;
   std::uint64_t clock_ms = 0;
   std::function<std::uint64_t()> now_ms = [this] { return clock_ms; };
@@ -78,7 +78,7 @@ private:
   std::array<std::optional<std::uint64_t>, kSixAxes> on_since_{};
 };
 
-// ST DocID028475: the registers 0x0F to 0x12, and from 0x22 on; what a count is in each range.
+// ST DocID028475: the registers 0x0F to 0x12, and from 0x22 on; the value of a count in each range.
 class Lsm6dsl final : public SixAxesChip {
 public:
   Lsm6dsl() { lose_power(); }
@@ -143,7 +143,7 @@ private:
   std::uint64_t first_after_ms() const override { return 2; }
 };
 
-// It comes awake.
+// It is awake at power-up.
 class Mpu6500 final : public Mpu6050 {
 public:
   Mpu6500() { reset(std::byte{0x01}); }

@@ -1,5 +1,5 @@
-// Chips with an accelerometer and a gyroscope: woken and told what to do, counts to g and deg/s, and what they have lost with
-// their power mended.
+// Chips with an accelerometer and a gyroscope: woken and configured, from counts to g and deg/s, and configured again after a
+// loss of power.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr unsigned kStrengthInput = 3, kTurningInput = 4, kInputs = 7;
 constexpr std::uint64_t kPeriodMs = 20;
-constexpr unsigned kPatience = 4;  // samples, until one that has lost its power is read again
+constexpr unsigned kPatience = 4;  // samples until a chip that lost its power is read again
 constexpr std::size_t kReads = 2;  // transfers of a sample
 
 struct KnownChip {
@@ -53,13 +53,13 @@ struct Reader {
     channel.input = static_cast<std::uint8_t>(input);
     return drivers::driver(driver).read(board, sensor, channel, raw);
   }
-  // A sample, and then a period.
+  // Takes a sample, then waits a period.
   bool read(unsigned input) {
     const bool known = ask(input);
     chip->clock_ms += kPeriodMs;
     return known;
   }
-  // Samples in vain, until there is a reading.
+  // The number of failed samples until there is a reading.
   unsigned in_vain() {
     unsigned samples = 0;
     while (!read(0) && samples <= kPatience)
@@ -84,7 +84,7 @@ std::size_t logged(const test::Rig& rig, const std::string& text) {
       rig.lines, [&](const std::string& line) { return line.find(text) != std::string::npos; }));
 }
 
-// A robot with that chip, and a program that knows how it moves.
+// A robot with that chip, and a program that reacts to its motion.
 struct MovedRobot {
   explicit MovedRobot(const KnownChip& known) : chip(known.make()) {
     chip->now_ms = [this] { return rig.kernel.now() / 1000; };
@@ -196,7 +196,7 @@ TEST_CASE("six axes: no answer is no reading, be it to the first question or to 
       CHECK(asked == kReads);
       CHECK(reader.raw == 77);
     }
-    // Where the bus works by itself: asked for the same as when it is due, and told nothing.
+    // On a bus that works in the background: the driver asks ahead for the same reads as when it is due, and writes nothing.
     reader.board.on_bus = [](std::uint8_t, std::uint8_t, std::span<const std::byte>,
                              std::span<std::byte> in) { return in.empty(); };
     reader.take_transfers();
@@ -264,7 +264,7 @@ TEST_CASE("six axes: a program knows how the robot is held, that it is shaken, f
     CHECK(logged(robot.rig, "right") == 1);
     CHECK(logged(robot.rig, "forward") == 1);
     CHECK(logged(robot.rig, "nods") == 1);
-    robot.move({1.6, 1.6, 1.6, 0, 100, 470}, 400);  // no axis alone says that it is shaken
+    robot.move({1.6, 1.6, 1.6, 0, 100, 470}, 400);  // the shaking is visible in no single axis
     CHECK(logged(robot.rig, " log ") == 6);
     CHECK(logged(robot.rig, "shaken") == 1);
     CHECK(logged(robot.rig, "rolls") == 1);

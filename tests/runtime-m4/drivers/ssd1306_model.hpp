@@ -1,7 +1,7 @@
-// An SSD1306 on a module of 128 x 64 dots, as Solomon Systech's data sheet (Rev. 1.1) and its application note on the charge pump
-// say it, without a look at the driver: control bytes (8.1.5.2), the memory and its three ways of addressing (8.7, 10.1.3), commands
-// (table 9-1), their values at a reset (8.5), the charge pump (application note, 3.1). Its panel is mounted as that of common modules:
-// upright with the columns remapped and the rows scanned from the last one.
+// A model of an SSD1306 on a module of 128 x 64 dots, written from Solomon Systech's data sheet (Rev. 1.1) and its application
+// note on the charge pump, independent of the driver: control bytes (8.1.5.2), the memory and its three addressing modes (8.7,
+// 10.1.3), commands (table 9-1), their values at a reset (8.5), the charge pump (application note, 3.1). Its panel is mounted as
+// in common modules: it is upright with the columns remapped and the rows scanned from the last one.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ public:
 
   explicit Ssd1306(std::uint8_t address) : address_(address) { lose_power(); }
 
-  // What stands in its memory at power-up is nobody's.
+  // The contents of its memory at power-up are random.
   void lose_power() {
     settings_ = {};
     command_.clear();
@@ -28,7 +28,7 @@ public:
         byte = static_cast<std::uint8_t>(noise_());
   }
 
-  // START, the bytes, STOP. False: it has not acknowledged one of them.
+  // START, the bytes, STOP. False: it did not acknowledge one of them.
   bool transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
     if (absent || address != address_ || !in.empty()) return false;
     ++transfers;
@@ -64,17 +64,17 @@ public:
   }
   bool is_on() const { return settings_.on; }
 
-  // What another program may have told it.
+  // Commands that another program may have sent.
   void tell(std::initializer_list<std::uint8_t> commands) {
     for (const std::uint8_t byte : commands)
       command(byte);
   }
 
-  bool absent = false;             // it has no power, or its wire is off
-  std::size_t disturbed_byte = 0;  // of each transfer, from 1 on: is not acknowledged
+  bool absent = false;             // it has no power, or is disconnected
+  std::size_t disturbed_byte = 0;  // this byte of each transfer, from 1 on, is not acknowledged
   unsigned transfers = 0;
   std::size_t bytes = 0;  // without the address
-  bool unknown = false;   // it was told something that it does not know
+  bool unknown = false;   // it got an unknown command
 
 private:
   enum class Next : std::uint8_t { control, one_command, commands, one_datum, data };
@@ -89,7 +89,7 @@ private:
     unsigned first_page = 0, last_page = 7, first_column = 0, last_column = 127;
   };
 
-  // Co says whether another control byte follows the next byte, D/C# whether that is a datum.
+  // Co: another control byte follows the next byte. D/C#: the next byte is a datum.
   Next control(std::uint8_t byte) {
     if ((byte & 0x3F) != 0) unknown = true;
     const bool data = (byte & 0x40) != 0;
@@ -102,7 +102,7 @@ private:
     return as == Next::data || as == Next::commands ? as : Next::control;
   }
 
-  // Where a column's dots stand is settled when it is written (10.1.8).
+  // The place of a column's dots is determined when they are written (10.1.8).
   void datum(std::uint8_t byte) {
     Settings& s = settings_;
     memory_[s.page][s.remapped ? kWidth - 1 - s.column : s.column] = byte;
@@ -208,7 +208,7 @@ private:
 
   std::uint8_t address_;
   Settings settings_;
-  std::vector<std::uint8_t> command_;  // that is not whole yet
+  std::vector<std::uint8_t> command_;  // not complete yet
   std::array<std::array<std::uint8_t, kWidth>, kPages> memory_{};
   std::mt19937 noise_{1306};
 };

@@ -1,4 +1,4 @@
-// A face on an SSD1306, by a model of it: which of its dots are lit, whatever the bus, the display and the program do.
+// A face on an SSD1306, with a model of it: which of its dots are lit, whatever the bus, the display and the program do.
 #include <memory>
 #include <random>
 #include <set>
@@ -18,11 +18,11 @@ using namespace robosync;
 namespace ssd1306_test {
 namespace {
 
-// As a picture is drawn: where it stands, and how large a light of it is.
+// The place of a picture, and the size of a light in it.
 constexpr unsigned kLeft = 36, kTop = 0, kSide = 12, kLights = 5;
 constexpr std::uint64_t kFirst = 700;   // ms until everything has been drawn once
-constexpr std::uint64_t kChange = 300;  // ms that any change of the picture takes at most
-constexpr std::uint64_t kRound = 5100;  // ms until everything has been said again
+constexpr std::uint64_t kChange = 300;  // ms, the most for any change of the picture
+constexpr std::uint64_t kRound = 5100;  // ms until everything has been sent again
 
 using Drawing = std::array<std::string_view, kLights>;
 constexpr Drawing kDark = {".....", ".....", ".....", ".....", "....."};
@@ -105,7 +105,7 @@ struct DisplayRig {
   }
   void feed(int near) { rig.feed(0, near); }
   void run(std::uint64_t ms) { rig.run(rig.kernel.now() / 1000 + ms); }
-  // It fires again.
+  // Makes the rule fire again.
   void order() {
     feed(6);
     run(5);
@@ -129,7 +129,7 @@ TEST_CASE("ssd1306: out of noise it is set up, and dark until a picture is shown
   for (const bool works_by_itself : {false, true}) {
     DisplayRig robot("SHOW face happy", face("face"), works_by_itself);
     for (std::uint64_t ms = 0; ms < kFirst; ms += 10) {
-      CHECK(robot.display().dark());  // nobody sees what stood there
+      CHECK(robot.display().dark());  // the old contents are not visible
       robot.run(10);
     }
     CHECK(robot.display().is_on());
@@ -207,13 +207,13 @@ TEST_CASE(
   auto& display = robot.display();
   display.transfers = 0;
   robot.run(500);
-  CHECK(display.transfers >= 9);  // who pulls a wire off is noticed
+  CHECK(display.transfers >= 9);  // a disconnected wire is noticed
   CHECK(display.transfers <= 11);
   display.transfers = 0;
   robot.run(200 + kChange);
   CHECK(shows(display, "sad"));
   CHECK(display.transfers < 60);
-  CHECK(robot.longest <= 19);  // which others on the bus wait for
+  CHECK(robot.longest <= 19);  // others on the bus wait for this
 }
 
 TEST_CASE(
@@ -235,7 +235,7 @@ TEST_CASE(
     CHECK(shows(robot.display(), "happy"));
     robot.rig.runtime.stop();
     robot.rig.run(robot.rig.kernel.now() / 1000);
-    robot.rig.runtime.resume();  // before the display has looked
+    robot.rig.runtime.resume();  // before the display's driver has noticed
     robot.run(kChange);
     CHECK(shows(robot.display(), holds ? kDrawings.at("happy") : kDark));
     robot.rig.runtime.stop();
@@ -325,7 +325,7 @@ TEST_CASE("ssd1306: whatever another program has told it is said otherwise") {
                                                       {0x8D, 0x10},
                                                       {0xAE},
                                                       {0xB5, 0x1F, 0x07},
-                                                      {0x81}};  // the last one is not whole
+                                                      {0x81}};  // the last one is incomplete
   for (const auto& before : told) {
     DisplayRig robot;
     robot.display().tell(before);
@@ -388,7 +388,7 @@ TEST_CASE("ssd1306: drawn lives") {
   }
 }
 
-// ---- what no image does
+// ---- what no image can do
 
 namespace {
 
@@ -431,7 +431,7 @@ TEST_CASE("ssd1306: an image in which displays are shared, or are none, is refus
   CHECK(refused([](auto&, auto&, auto& left, auto&) { left.bus = 200; }) == Refusal::bad_index);
   CHECK(refused([](auto&, auto&, auto& left, auto& right) { right.bus = left.bus; }) ==
         Refusal::shared_pin);
-  // No servo's pulses go to a display, nor a picture to a servo chip.
+  // A servo's pulses cannot go to a display, nor a picture to a servo chip.
   CHECK(refused([](auto&, auto&, auto& left, auto&) {
           left.driver = vm::DriverId::pca9685_servo;
           left.pin = 3;
@@ -455,7 +455,7 @@ TEST_CASE("ssd1306: the guard keeps no picture for whom it has halted, nor for o
   vm::Image image;
   image.actuators = wiring;
   image.sensors = sensors;
-  outputs.show(1, 7);  // nobody owns it yet
+  outputs.show(1, 7);  // no program owns it yet
   outputs.own(image);
   board.writes.clear();
   CHECK(outputs.picture_on(0) == 0);
@@ -476,7 +476,7 @@ TEST_CASE("ssd1306: the guard keeps no picture for whom it has halted, nor for o
   outputs.disown();
   CHECK(outputs.picture_on(0) == 0);
   CHECK(board.pictures.empty());
-  // Nothing of it is on a pin; that of the servo goes off with the program.
+  // Nothing of it is on a pin; the servo's pin goes off with the program.
   CHECK(board.writes == std::vector<std::pair<std::uint16_t, std::uint32_t>>{{7, 0}});
 }
 

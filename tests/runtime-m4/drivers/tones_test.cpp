@@ -1,4 +1,4 @@
-// Melodies and tones: which, for how long, and silence whenever nobody may sound.
+// Melodies and tones: which, for how long, and silence whenever the speaker may not sound.
 #include <regex>
 
 #include <catch2/catch.hpp>
@@ -22,7 +22,7 @@ std::string text_of(const char* name) {
   return testing::read_file(std::filesystem::path(ROBOSYNC_SOURCE_DIR) / name);
 }
 
-// Hz and milliseconds, as melodies.def writes them.
+// Hz and milliseconds, as in melodies.def.
 using Notes = std::vector<std::pair<unsigned, unsigned>>;
 std::vector<std::pair<std::string, Notes>> melodies_written() {
   std::vector<std::pair<std::string, Notes>> melodies;
@@ -38,7 +38,7 @@ std::vector<std::pair<std::string, Notes>> melodies_written() {
   return melodies;
 }
 
-// What sounds from the command on, millisecond by millisecond.
+// The sound from the command on, millisecond by millisecond.
 struct Horn {
   explicit Horn(const std::string& body) {
     const std::string rsl = test::stops_when_far(body);
@@ -159,7 +159,7 @@ TEST_CASE("tones: the guard sounds nothing for whom it has halted, nor for who h
   const auto wiring = test::servo_and(vm::DriverId::tones, vm::Release::hold);
   vm::Image image;
   image.actuators = wiring;
-  outputs.sound(1, 440);  // nobody owns it yet
+  outputs.sound(1, 440);  // no program owns it yet
   outputs.own(image);
   outputs.sound(0, 440);
   CHECK(board.sounds.empty());

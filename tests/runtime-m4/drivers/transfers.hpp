@@ -1,4 +1,4 @@
-// What a driver has asked of the bus.
+// The transfers that a driver has requested from the bus.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline std::size_t writes_of(const Transfers& transfers) {
       std::ranges::count_if(transfers, [](const auto& one) { return one.in == 0; }));
 }
 
-// Addresses included, of which one that reads has two.
+// Including addresses; a transfer that reads has two.
 inline std::size_t bytes_of(const Transfers& transfers) {
   std::size_t bytes = 0;
   for (const auto& one : transfers)
@@ -25,7 +25,7 @@ inline std::size_t bytes_of(const Transfers& transfers) {
   return bytes;
 }
 
-// What vm/drivers.def says of one sample of that driver.
+// The declaration of one sample of a driver in vm/drivers.def.
 struct Declared {
   std::size_t transfers, bytes;
 };

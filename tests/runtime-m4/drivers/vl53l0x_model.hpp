@@ -1,8 +1,9 @@
-// A VL53L0X as public drivers of it describe its data sheet (DocID029104) and ST's API (UM2039), which were not at hand, without a
-// look at our driver: boot after a loss of power or XSHUT, reference registers, single ranging, and the result's interrupt.
+// A model of a VL53L0X, written from public drivers, since its data sheet (DocID029104) and ST's API (UM2039) were not at hand,
+// and independent of our driver: boot after a loss of power or XSHUT, reference registers, single ranging, and the result's
+// interrupt.
 //
-// Where neither says what happens, the worst comes: a new result shows only if it was asked for by SYSTEM_INTERRUPT_CONFIG_GPIO, a
-// start in the midst of a measurement begins it anew, and the last result stands there meanwhile.
+// Where the behaviour is not documented, the model assumes the worst: a new result shows only if SYSTEM_INTERRUPT_CONFIG_GPIO
+// requested it, a start during a measurement restarts it, and the last result stays there in the meantime.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ public:
 
   Vl53l0x() { lose_power(); }
 
-  // It has power again at once, and boots.
+  // Its power returns immediately, and it boots.
   void lose_power() {
     registers_.fill(0);
     registers_[0xC0] = 0xEE;
@@ -32,7 +33,7 @@ public:
     boots_until_ = now_ms() + kBootMs;
   }
 
-  // START, the bytes, STOP. False: it has not acknowledged.
+  // START, the bytes, STOP. False: it did not acknowledge.
   bool transfer(std::span<const std::byte> out, std::span<std::byte> in) {
     if (absent || now_ms() < boots_until_) return false;
     finish();
@@ -44,7 +45,7 @@ public:
     return true;
   }
 
-  // As a program that is over has left it: with a result that nobody has taken.
+  // The state that an earlier program may leave: with a result that was not read.
   void measure_before(unsigned before_mm) {
     boots_until_ = 0;
     registers_[kConfig] = 4;
@@ -58,7 +59,7 @@ public:
   bool measures() const { return ready_at_.has_value(); }
   bool has_untaken() const { return (registers_[kInterrupt] & 7) != 0; }
 
-  unsigned mm = 1000, status = kValid;  // what it will find
+  unsigned mm = 1000, status = kValid;  // of the next result
   bool absent = false;
   unsigned starts = 0;
   std::uint64_t clock_ms = 100;

@@ -1,4 +1,4 @@
-// The distance sensor that works with light: from its results to readings, what it is told when, and what is none.
+// The optical distance sensor: from its results to readings, the writes to it and their times, and results that are not readings.
 #include <utility>
 
 #include <catch2/catch.hpp>
@@ -28,7 +28,7 @@ struct LightReader {
       return bus == sensor.bus && address == sensor.address && chip.transfer(out, in);
     };
   }
-  // A sample, so long after the last one.
+  // Takes a sample, `after_ms` after the last one.
   bool read(std::uint64_t after_ms = vm::kMinRangingPeriodMs) {
     chip.clock_ms += after_ms;
     return drivers::driver(vm::DriverId::vl53l0x).read(board, sensor, vm::Channel{}, raw);
@@ -48,7 +48,7 @@ const char* const kSeeing = R"({
 
 // A robot with both sensors of this kind on one bus.
 struct SeeingRobot {
-  // The distance sensor is that of a robot that has run: a result is there, `before_mm`.
+  // The distance sensor has been used before: a result is there, `before_mm`.
   explicit SeeingRobot(const std::string& program, unsigned before_mm = 1000) {
     light.now_ms = air.now_ms = [this] { return rig.kernel.now() / 1000; };
     light.measure_before(before_mm);
@@ -107,7 +107,7 @@ TEST_CASE("vl53l0x: a result that is not valid is none, and neither is one of 81
     reader.raw = 77;
     CHECK(reader.read() == (status == Vl53l0x::kValid));
     CHECK(reader.raw == (status == Vl53l0x::kValid ? 1000 : 77));
-    CHECK(reader.chip.measures());  // and the next one may be
+    CHECK(reader.chip.measures());  // the next result may be valid
   }
   reader.chip.status = Vl53l0x::kValid;
   for (const unsigned mm : {8190U, 8191U, 0x2000U, 0xFFFFU}) {
@@ -143,7 +143,7 @@ TEST_CASE("vl53l0x: no answer is no reading, be it to the first question or to t
     CHECK(asked == kLightReads);
     CHECK(reader.raw == 77);
   }
-  // Where the bus works by itself: asked for the same as when it is due, and told nothing.
+  // On a bus that works in the background: the driver asks ahead for the same reads as when it is due, and writes nothing.
   reader.board.on_bus = [](std::uint8_t, std::uint8_t, std::span<const std::byte>,
                            std::span<std::byte> in) { return in.empty(); };
   reader.take_transfers();

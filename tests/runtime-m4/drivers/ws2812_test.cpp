@@ -1,5 +1,5 @@
-// A panel of lights: what the board is told to show, when, and that it is dark whenever nobody may show anything.
-// tests/runtime-m4/boards/panel_test.cpp has what comes out of a board.
+// A panel of lights: what the board is told to show, when, and that it is dark whenever nothing may be shown.
+// tests/runtime-m4/boards/panel_test.cpp tests a board's output.
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ using namespace robosync;
 namespace ws2812_test {
 namespace {
 
-constexpr unsigned kLook = 10;  // milliseconds, in which the safety monitor looks
+constexpr unsigned kLook = 10;  // milliseconds, the safety monitor's period
 constexpr unsigned kTime = policy::kPanelGapMs + kLook;
 using Pictures = std::vector<std::uint32_t>;
 
@@ -204,7 +204,7 @@ TEST_CASE(
   CHECK(own(panel) == 0);
   CHECK(own(panel) == 0);
   CHECK(own(program(vm::DriverId::servo, 4)) == 0);
-  CHECK(own(program(vm::DriverId::servo, 3)) == 1);  // though the panel's program went before
+  CHECK(own(program(vm::DriverId::servo, 3)) == 1);  // although the panel's program came before
   CHECK(own(program(vm::DriverId::servo, 3)) == 1);
   CHECK(own(panel) == 1);
   outputs.disown();
@@ -234,14 +234,14 @@ TEST_CASE("ws2812: the guard shows nothing for whom it has halted, nor for who h
     outputs.go_on(now += kernel::milliseconds(policy::kPanelGapMs));
     return board.noting_panel.pictures;
   };
-  outputs.show(1, 7);  // nobody owns it yet
+  outputs.show(1, 7);  // no program owns it yet
   CHECK(told().empty());
   outputs.own(image);
   CHECK(told() == Pictures{0});
   outputs.show(0, 7);
   CHECK(told() == Pictures{0});
   outputs.show(1, 7);
-  outputs.halt(0b10);  // before it was told
+  outputs.halt(0b10);  // before the command was sent
   CHECK(told() == Pictures{0, 0});
   outputs.show(1, 7);
   CHECK(told() == Pictures{0, 0});

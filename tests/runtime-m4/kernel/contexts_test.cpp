@@ -1,5 +1,5 @@
-// Services of the kernel called from where they must not be called: the assertion says so, and
-// nothing has happened. What only the Cortex-M4 has (interrupts): firmware/contexts.cpp.
+// Kernel services called from contexts where they are not allowed: the assertion reports it, and
+// the call has no effect. Contexts that only the Cortex-M4 has (interrupts): firmware/contexts.cpp.
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@
 namespace robosync::kernel::test {
 namespace {
 
-// As long as it lives an assertion that fails throws "service: why".
+// While one exists, a failed assertion throws "service: why".
 class Throwing {
 public:
   Throwing() {
@@ -22,7 +22,7 @@ public:
   ~Throwing() { assertion_failed = port::panic; }
 };
 
-// What the assertion says of that call; "" when none fails.
+// The message of the assertion that the call fails; "" if none.
 template <class Call>
 std::string said(Call call) {
   const Throwing throwing;
@@ -34,7 +34,7 @@ std::string said(Call call) {
   return "";
 }
 
-// … made from a thread.
+// The same for a call from a thread.
 template <class Call>
 std::string said_in_thread(Rig& rig, Call call) {
   std::string text = "it never ran";
@@ -113,7 +113,7 @@ TEST_CASE("Assertions: threads do not come and go while interrupts are held off"
           kernel.set_priority(other.thread, {1, 1});
         }) == "set_priority" + held);
   CHECK(said_in_thread(rig, [&] {
-          const auto lock = kernel.lock();  // that is allowed
+          const auto lock = kernel.lock();  // this is allowed
           kernel.set_priority(other.thread, {1, 1});
         }).empty());
 }

@@ -1,4 +1,4 @@
-// The kernel on the host: what threads may rely on, observed from threads.
+// The kernel on the host: its guarantees for threads, observed from threads.
 #include "runtime-m4/kernel/kernel.hpp"
 
 #include <string>
@@ -106,7 +106,7 @@ TEST_CASE("who is woken by one that signals and waits finds it waiting") {
     CHECK(rig.kernel.now() == 5000);
     tell(kForever);
     rig.kernel.signal(rig.kernel.current(), kB);
-    tell(kForever);  // what is there already is not waited for
+    tell(kForever);  // a pending event is not waited for
   });
   waiter = &low.thread;
   rig.kernel.run();
@@ -117,7 +117,7 @@ TEST_CASE("events outside the mask are kept and do not wake") {
   Rig rig;
   auto& waiter = rig.add("waiter", Category::behavior, 9, [&] {
     rig.note(std::to_string(rig.kernel.wait(kA)));
-    rig.note(std::to_string(rig.kernel.wait(kB, 0)));  // a look only
+    rig.note(std::to_string(rig.kernel.wait(kB, 0)));  // only a check
     rig.note(std::to_string(rig.kernel.wait(kB, 0)));
   });
   rig.add("signaller", Category::behavior, 1, [&] {
@@ -228,7 +228,7 @@ TEST_CASE("a thread whose entry returns is stopped, the watcher is told, the oth
   auto& brief = rig.add("brief", Category::behavior, 5, [&] { rig.note("brief"); });
   rig.add("other", Category::behavior, 1, [&] {
     rig.note("other");
-    rig.kernel.signal(brief.thread, kA);  // to nobody: no effect
+    rig.kernel.signal(brief.thread, kA);  // the thread has ended: no effect
     CHECK(rig.kernel.state(brief.thread) == Thread::State::stopped);
   });
   rig.kernel.run();

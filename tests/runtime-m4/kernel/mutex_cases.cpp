@@ -1,5 +1,5 @@
-// See mutex_cases.hpp. In each, `low` takes something, makes others ready that outrank it, and
-// gives back; what they note in between says who ran when. Capital letters are the others.
+// See mutex_cases.hpp. In each, `low` takes a mutex, makes higher threads ready, and
+// releases it; their notes show who ran when. Capital letters are the other threads.
 #include "tests/runtime-m4/kernel/mutex_cases.hpp"
 
 #include <array>
@@ -41,7 +41,7 @@ void go(Thread* thread) {
   kernel().signal(*thread, kGo);
 }
 
-// Waits to be called, then takes and gives back `mutex`.
+// Waits to be called, then takes and releases `mutex`.
 void use(Mutex& mutex, char name) {
   kernel().wait(kGo);
   kernel().acquire(mutex);
@@ -62,7 +62,7 @@ void run_between(void*) {
   note('B');
 }
 
-// All at once; so the others wait when `entry` begins.
+// Starts all threads; the others wait when `entry` begins.
 void set(void (*entry)(void*), void (*high_entry)(void*) = run_high,
          void (*middle_entry)(void*) = run_middle) {
   {
@@ -103,7 +103,7 @@ void nested_in_order(Stage&) {
   });
 }
 
-// High wants what middle uses, middle wants what low holds: high is not held up by either.
+// High wants a mutex that middle uses, middle wants one that low holds: neither delays high.
 void chain(Stage&) {
   const auto both = [](void*) {
     kernel().wait(kGo);
@@ -125,8 +125,8 @@ void chain(Stage&) {
   set(holder, run_high, both);
 }
 
-// The deadline of one that wants the mutex passes while it is held: it is run late, and who held it
-// has its own rank again.
+// The deadline of a thread that wants the mutex passes while it is held: the thread runs late, and the
+// holder has its own rank again.
 void deadline_passes(Stage&) {
   const auto waiter = [](void*) {
     kernel().wait(kGo, kernel().now() + kTick);
@@ -149,7 +149,7 @@ void deadline_passes(Stage&) {
   set(holder, waiter);
 }
 
-// One that is ready, and held off, comes to rank higher: the ceiling rises with it.
+// A thread that is ready but held off by the ceiling rises in rank: the ceiling rises with it.
 void raised_while_held_off(Stage&) {
   set([](void*) {
     kernel().acquire(of_middle);
@@ -181,7 +181,7 @@ void keeps_another(Stage&) {
   });
 }
 
-// Above the ceiling: it stops the holder in the middle, which has taken two.
+// A thread above the ceiling stops the holder, which has taken two mutexes.
 void holder_is_stopped(Stage&) {
   const auto stopper = [](void*) {
     kernel().wait(kGo);
@@ -216,7 +216,7 @@ void above_the_ceiling(Stage&) {
   set(holder, intruder);
 }
 
-// Switches while it is held, by threads above the ceiling, lead back to the holder.
+// Threads above the ceiling switch while it is held; afterwards the holder continues.
 void preempted_holder(Stage&) {
   set([](void*) {
     kernel().acquire(of_middle);

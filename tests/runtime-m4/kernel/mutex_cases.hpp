@@ -1,6 +1,6 @@
-// What a mutex with a ceiling promises, as cases that run on the host (mutex_test.cpp) and on the
+// The guarantees of a mutex with a ceiling, as cases that run on the host (mutex_test.cpp) and on the
 // board (firmware/mutex.cpp): the six in which priority inheritance goes wrong in other kernels
-// (../docs/kernel.md), and what becomes of a mutex whose holder is stopped.
+// (../docs/kernel.md), and a mutex whose holder is stopped.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace mutex_cases {
 
-// What the cases need of where they run.
+// The environment of a case.
 class Stage {
 public:
   explicit Stage(robosync::kernel::Kernel& its_kernel) : kernel(its_kernel) {}
@@ -32,7 +32,7 @@ struct Case {
 
 inline constexpr std::size_t kCount = 9;
 std::span<const Case, kCount> all();
-// Runs a case; true when the threads have noted what is expected, else `noted` says what.
+// Runs a case; true if the threads' notes are as expected; otherwise `noted` has them.
 bool passes(const Case& example, Stage& stage);
 const char* noted();
 

@@ -42,8 +42,8 @@ private:
   std::array<Worker, 4> workers_;
 };
 
-// Threads of all categories take mutexes, give them back in any order, signal and wait, as a list
-// of numbers tells whoever runs. After each step, is it the right one that runs?
+// Threads of all categories take mutexes, release them in any order, signal and wait; a list of numbers
+// tells the running thread what to do. After each step, checks that the right one runs.
 class Play {
 public:
   explicit Play(std::vector<std::uint16_t> moves) : moves_(std::move(moves)) {
@@ -91,7 +91,7 @@ private:
   void take(unsigned self, unsigned which) {
     if (threads_[self]->rank() < ceiling(which) || holders_[which] == threads_[self]) return;
     expect(holders_[which] == nullptr);
-    holders_[which] = threads_[self];  // first, so that it is right when others look
+    holders_[which] = threads_[self];  // first, so that it is right when others check
     rig_.kernel.acquire(mutexes_[which]);
   }
   void give_back(unsigned self, unsigned which) {
@@ -106,7 +106,7 @@ private:
     return kIdleRank;
   }
 
-  // The policy in the plainest words; see firmware/stress.cpp.
+  // The policy; see firmware/stress.cpp.
   const Thread* should_run() const {
     const Thread* best = nullptr;
     for (const Thread* thread : rig_.kernel.threads())
@@ -125,7 +125,7 @@ private:
     expect(&rig_.kernel.current() == threads_[self]);
     expect(should_run() == threads_[self]);
   }
-  // Threads cannot throw to whoever runs them.
+  // Threads cannot throw to their caller.
   void expect(bool holds) { right_ = right_ && holds; }
 
   static constexpr std::array kCeilings = {Category::control, Category::behavior,

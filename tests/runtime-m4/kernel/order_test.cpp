@@ -1,4 +1,4 @@
-// The kernel's order after any changes of priorities against an order that is sorted.
+// The kernel's order after any changes of priorities, compared with a sorted order.
 #include <algorithm>
 #include <list>
 #include <vector>
@@ -25,7 +25,8 @@ std::string order_of(const Kernel& kernel) {
   return order;
 }
 
-// All of one window, in the order of their age: the same as if all were taken out and added anew.
+// Changes all priorities of one window, in the order of the threads' age: the result is the same as if all were removed and
+// added again.
 void ranks_are_sorted() {
   static constexpr const char* kNames[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
   Kernel kernel;

@@ -1,5 +1,5 @@
-// Regions of the MPU (policy/regions.hpp) against what the ARMv7-M manual says they cover,
-// byte by byte.
+// MPU regions (policy/regions.hpp) compared byte by byte with what they cover according to the ARMv7-M
+// manual.
 #include "runtime-m4/policy/regions.hpp"
 
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@ using namespace robosync::policy::regions;
 
 namespace {
 
-// As the core reads the two registers.
+// Interprets the two registers as the core does.
 bool covers(const Region& region, std::uint32_t address) {
   if ((region.size_and_eighths & 1) == 0) return false;
   const std::uint32_t size = 2U << (region.size_and_eighths >> 1 & 0x1F);

@@ -7,9 +7,9 @@ built=$(dirname "$0")/../../../build/m4
 elf=${1:-$built/kernel-test.elf}
 [ -f "$elf" ] || { echo "run_qemu.sh: no $elf; build the m4 preset first" >&2; exit 3; }
 
-# -icount: 32 virtual nanoseconds an instruction, about the speed of the board, and the same in every
-# run. That is so only as long as the core does not wait for interrupts: QEMU then goes by the host's
-# clock and loses ticks. So the tests keep a thread spinning below all others.
+# -icount: 32 virtual nanoseconds per instruction, about the speed of the board, and the same in every
+# run. This holds only while the core does not wait for interrupts: QEMU then follows the host's
+# clock and loses ticks. So the tests keep a thread of the lowest rank spinning.
 status=0
 timeout 120 qemu-system-arm -M "$(cat "$built/machine")" -nographic -monitor none -serial none \
   -icount shift=5 -semihosting-config enable=on,target=native \

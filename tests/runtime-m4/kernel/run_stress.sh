@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the kernel's stress test on the emulated board (firmware/stress.cpp): every decision of the context
-# switch against a naive policy, under random use and random interrupts. Ends with "N passed, N failed".
+# Runs the kernel's stress test on the emulated board (firmware/stress.cpp): compares every decision of the context
+# switch with a naive policy, under random use and random interrupts. Ends with "N passed, N failed".
 #
 # usage: tests/runtime-m4/kernel/run_stress.sh [SECONDS]     of virtual time (default: 60; a minute takes some 20 s)
 set -euo pipefail
@@ -9,7 +9,7 @@ elf=$built/kernel-stress.elf
 seconds=${1:-60}
 [ -f "$elf" ] || { echo "run_stress.sh: no $elf; build the m4 preset first" >&2; exit 3; }
 
-# As in run_qemu.sh; with sleep=off the time in which all threads sleep is skipped, so that runs are alike.
+# As in run_qemu.sh; with sleep=off the time in which all threads sleep is skipped, so that runs are repeatable.
 status=0
 timeout $((60 + seconds * 2)) qemu-system-arm -M "$(cat "$built/machine")" -nographic -monitor none -serial none \
   -icount shift=5,sleep=off -semihosting-config enable=on,target=native \

@@ -14,7 +14,7 @@ TEST_CASE("the empty ready set selects idle") {
 
 namespace {
 
-// Are these operations on a ready set the same as on a set of ranks? Each is one of three, and
+// Do these operations on a ready set give the same results as on a set of ranks? Each is one of three, with
 // a rank.
 template <unsigned kWords>
 void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {

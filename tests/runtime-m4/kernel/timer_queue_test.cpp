@@ -1,4 +1,4 @@
-// The timing wheel against a naive model: a list of due ticks that is searched.
+// The timing wheel compared with a naive model: a list of due ticks that is searched.
 #include "runtime-m4/kernel/timer_queue.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Bench {
     return due;
   }
 
-  // As a queue comes there: from 0, in two parts, since work that is due is seen half the range of ticks ahead.
+  // Gets there as a queue does: from 0, in two parts, since due work is seen at most half the range of ticks ahead.
   void sleep_until_near_the_wrap() {
     for (const std::uint32_t tick : {0x7FFF'FF00U, 0xFFFF'FF00U}) {
       now = tick;
@@ -41,7 +41,7 @@ struct Bench {
     return std::any_of(timers.begin(), timers.end(), [](const Timer& t) { return t.armed(); });
   }
 
-  // Goes to the next tick of interest, at most `limit` ticks on, and checks what is due there.
+  // Advances to the next tick of interest, at most `limit` ticks ahead, and checks what is due there.
   void advance(std::uint32_t limit) {
     const std::uint32_t step = std::min(limit, queue.next_work() - now);
     for (const Timer& timer : timers) {

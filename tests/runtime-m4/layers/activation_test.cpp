@@ -1,4 +1,4 @@
-// Programs that come, go and are refused; what goes on meanwhile.
+// Programs that are activated, ended and refused; and what continues in the meantime.
 #include <cstring>
 
 #include <catch2/catch.hpp>
@@ -130,7 +130,7 @@ TEST_CASE("feeds that cannot be are refused") {
   }
   CHECK(rig.feed(1, 1) == link::FeedError::queue_full);
   rig.run(100'000);
-  CHECK(rig.status().steps == 1);  // the ones for the end of time did not come early
+  CHECK(rig.status().steps == 1);  // those for the end of time did not come early
 }
 
 TEST_CASE(
@@ -140,7 +140,7 @@ TEST_CASE(
   rig.feed(0, 8);
   rig.run(0);
   for (const int value : {20, 30, 8})
-    rig.feed(0, value, 100);  // back to what is known: no news
+    rig.feed(0, value, 100);  // back to the known value: no news
   rig.feed(0, 20, 200);
   rig.feed(0, 9, 200);
   rig.feed(0, 5, UINT64_MAX / 1000);  // after the end of time
@@ -186,7 +186,7 @@ TEST_CASE("a program that is refused for its memory leaves the running one alone
 }
 
 // Counts, lengths and offsets, in the header and in records: whatever an image says, its needs are
-// counted from what is there, and what is laid out for them holds all of it.
+// computed from its actual contents, and the layout has room for all of it.
 TEST_CASE("an image with changed numbers is refused, or runs in the memory it needs") {
   test::Draw draw(11);
   Rig rig;
@@ -262,7 +262,7 @@ TEST_CASE("what a program does never depends on the one before it") {
 }
 
 TEST_CASE("when the places for commands are all taken one is dropped, and no other is harmed") {
-  constexpr int kEach = 7;  // of four actuators: more than there are places, and no queue is full
+  constexpr int kEach = 7;  // for four actuators: more than there are places, yet no queue is full
   const auto moves = [](const std::string& actuator) {
     std::string commands;
     for (int i = 0; i < kEach; ++i)

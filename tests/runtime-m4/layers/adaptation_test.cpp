@@ -1,5 +1,5 @@
 // Adaptive priorities in whole programs: a behaviour that is triggered often overtakes a calm one
-// and falls back; nothing but the order of threads changes.
+// and falls back; only the order of threads changes.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -16,7 +16,7 @@ std::string adapting(const std::string& scheduler = R"({"alpha": 2, "window": "1
   return json.insert(json.find('{') + 1, "\"scheduler\": " + scheduler + ",");
 }
 
-// Each acts on an actuator of its own; the third reads what the other two read.
+// Each acts on its own actuator; the third reads what the other two read.
 const char* const kThree = R"(
 BEHAVIOR calm PRIORITY 20
   WHEN near X > 50
@@ -42,7 +42,7 @@ std::string order(const Rig& rig) {
   return order;
 }
 
-// `count` triggers of what waits for channel Y > 50, evenly over a second from `from_ms` on.
+// `count` triggers of the rule for channel Y > 50, spread evenly over a second from `from_ms` on.
 
 void trigger(Robot& robot, std::uint64_t from_ms, unsigned count) {
   for (unsigned i = 0; i < count; ++i) {
@@ -68,7 +68,7 @@ TEST_CASE("a busy behaviour overtakes a calm one for a window, with all its thre
   CHECK(order(rig) == kAsWritten);
   trigger(rig, 0, 8);
   rig.run(999);
-  CHECK(order(rig) == kAsWritten);  // the window is not over
+  CHECK(order(rig) == kAsWritten);  // the window has not ended
   rig.run(1000);
   // 8 triggers in a second at α = 2 are worth 16. The sensor thread and the step thread are shared.
   CHECK(order(rig) == "safety:0 b:26 a:20 d:5 busy:26 step:26 feeds:26 calm:20 both:5 ");
@@ -129,7 +129,7 @@ END
 )";
   Robot robot(kRivals, adapting());
   trigger(robot, 0, 10);
-  robot.feed(1500, "X", 60);  // calm takes it from nobody …
+  robot.feed(1500, "X", 60);  // calm takes the free actuator …
   trigger(robot, 1600, 1);    // … and busy, with a priority of 30 now, does not get it
   robot.run(1900);
   CHECK(robot.only("priority") == "1000 #20 priority b1 30\n");

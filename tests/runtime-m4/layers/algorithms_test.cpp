@@ -1,4 +1,4 @@
-// Algorithms in a robot: when they run, what becomes of their outputs, and of those that depend on them.
+// Algorithms in a robot: when they run, what happens to their outputs, and to algorithms that depend on them.
 #include "runtime-m4/layers/algorithms.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST_CASE("where the input is fed, an algorithm runs at its own rate on what was
   robot.feed(90, "FORCE", 6);   // seen at 120
   robot.feed(125, "FORCE", 0);  // … and forgotten at 160
   robot.feed(165, "FORCE", 9);
-  robot.feed(190, "FORCE", 0);  // nobody has seen the 9
+  robot.feed(190, "FORCE", 0);  // the 9 was never seen
   robot.run(1000);
   CHECK(robot.only("input fire") ==
         "0 #1 input FORCE 0\n"
@@ -78,7 +78,7 @@ TEST_CASE("what an algorithm says is as old as the reading that it was made of")
         "0 #1 input FORCE 0\n"
         "0 #2 input LEVEL 0\n"
         "90 #3 input FORCE 6\n"
-        "101 #4 stale LEVEL\n"  // made of the 0, at 80 too
+        "101 #4 stale LEVEL\n"  // computed from the 0, at 80 as well
         "120 #5 input LEVEL 2\n"
         "191 #6 stale FORCE\n"
         "191 #6 stale LEVEL\n");
@@ -147,7 +147,7 @@ TEST_CASE("what a module puts out is cut off at the range of its channel") {
   robosync_module wild = *algorithms::find_module(0);
   wild.process = [](void*, void*, const robosync_block* block) {
     block->outputs[0] = block->inputs[0] > 1000 ? INT32_MAX : INT32_MIN + 1;
-    return 0u;  // that nothing has changed is not believed either
+    return 0u;  // its report of no changes is not trusted either
   };
   const test::OtherModule other(wild);
   Robot robot(kWhenFirm, pad_robot(kFedPad));
@@ -184,7 +184,7 @@ TEST_CASE("a module finds its memory aligned, its scratch behind its state, and 
   CHECK(state_at % 8 == 0);
   CHECK(scratch_at == state_at + 16);
   CHECK(robot.only("input") ==
-        "0 #1 input FORCE 0\n");  // an output that is left unknown is no reading
+        "0 #1 input FORCE 0\n");  // an output that is left unknown is not a reading
 }
 
 TEST_CASE("a module begins before its first sample, and again when program time does") {
@@ -199,7 +199,7 @@ TEST_CASE("a module begins before its first sample, and again when program time 
   };
   const test::OtherModule other(noted);
   for (const std::string& pad : {kSampledPad, kFedPad}) {
-    // SAFETY has it run before program time, to have a first reading.
+    // SAFETY makes it run before program time, to get a first reading.
     Robot robot("SAFETY skin WHEN skin LEVEL IS firm\nDO STOP ALL\nEND\nEVERY 1s\nDO MOVE a\nEND\n",
                 pad_robot(pad));
     robot.feed(0, "FORCE", 0);

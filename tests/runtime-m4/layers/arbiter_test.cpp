@@ -1,4 +1,4 @@
-// The arbiter against a model written from docs/language.md: sets and lists in place of
+// The arbiter compared with a model written from docs/language.md: sets and lists instead of
 // masks, no shared code.
 #include "runtime-m4/layers/arbiter.hpp"
 
@@ -87,7 +87,7 @@ private:
   }
 };
 
-// What ProcessingLayer does with a decision, and nothing else.
+// Applies a decision as ProcessingLayer does, and nothing else.
 struct Table {
   Table() {
     robosync::policy::Needs needs;
@@ -117,7 +117,7 @@ struct Table {
   }
   void serve(const Claim& claim) { apply(claim, arbiter.decide(claim)); }
 
-  // Each actuator has one owner, and those that are owned are those that somebody holds.
+  // Each actuator has one owner, and the owned actuators are those that a response holds.
   bool is_sound() const {
     ActuatorMask seen = 0;
     bool sound = true;

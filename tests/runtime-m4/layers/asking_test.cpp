@@ -1,4 +1,5 @@
-// Sensors on a bus that works by itself: asked a millisecond before they are sampled, and waited for a little, not for ever.
+// Sensors on a bus that works in the background: they are asked a millisecond before they are sampled, and waited for a bounded
+// time.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -49,7 +50,7 @@ TEST_CASE(
     "a sensor that is asked ahead: all its channels, one tick before, then sampled when due") {
   AskingRig robot;
   robot.run(45);
-  // The program begins at 0, so the first time there is nothing before.
+  // The program begins at 0, so the first sample is not asked ahead.
   CHECK(robot.asked == std::vector<Asked>{{0, true, 1},
                                           {0, true, 2},
                                           {0, false, 1},
@@ -74,7 +75,7 @@ TEST_CASE("a sensor that is asked ahead: who has answers late is waited for, two
     CHECK_FALSE(sampled.ahead);
     CHECK(sampled.at_ms == 20 + std::min(late, 2U));
     robot.run(50);
-    CHECK(robot.asked.back().at_ms >= 40);  // its next turn is when it would have been
+    CHECK(robot.asked.back().at_ms >= 40);  // its next turn is not shifted
     CHECK(robot.asked.back().at_ms <= 42);
   }
 }

@@ -1,4 +1,4 @@
-// Which rules a step concerns: the index from inputs to rules, and what is evaluated in steps.
+// The rules that a step concerns: the index from inputs to rules, and what steps evaluate.
 #include <memory>
 #include <set>
 
@@ -25,7 +25,7 @@ namespace {
 
 constexpr unsigned kInputsOfAll = policy::kMaxChannels + policy::kMaxVariables;
 
-// A behaviour whose conditions are drawn: straight code over its inputs and three registers.
+// A behaviour with random conditions: straight-line code over its inputs and three registers.
 struct DrawnConditions {
   static constexpr unsigned kInputs = 6;
   static constexpr unsigned kRegisters = 3;
@@ -61,7 +61,7 @@ struct DrawnConditions {
     constexpr Opcode kOfTwo[] = {Opcode::add, Opcode::sub, Opcode::lt, Opcode::eq};
     const unsigned to = kInputs + draw.below(kRegisters);
     const unsigned from = draw.below(kInputs + kRegisters);
-    // The constant has a number that is one of a cell, too.
+    // The constant's index is also a valid cell number.
     if (draw.one_in(2)) return vm::encode(kWithConstant[draw.below(3)], to, from, draw.below(6));
     return vm::encode(kOfTwo[draw.below(4)], to, from, draw.below(kInputs + kRegisters));
   }
@@ -84,7 +84,7 @@ struct DrawnConditions {
   vm::Image image;
 };
 
-// A program with memory of its own.
+// A program with its own memory.
 class Loaded {
 public:
   void load(const vm::Image& image) {
@@ -121,7 +121,7 @@ TEST_CASE("the index has every rule whose result an input can change, and names 
     const DrawnConditions drawn(draw);
     program.load(drawn.image);
     for (unsigned rule = 0; rule < DrawnConditions::kRules; ++rule) {
-      // What the words say, by the table that the documentation is made of.
+      // The inputs that the code names, according to the table from which the documentation is generated.
       std::set<unsigned> named;
       for (const vm::Word word : drawn.image.code.subspan(drawn.rules[rule].condition_start,
                                                           drawn.rules[rule].condition_length)) {
@@ -133,7 +133,7 @@ TEST_CASE("the index has every rule whose result an input can change, and names 
       }
       for (unsigned input = 0; input < kInputsOfAll; ++input)
         REQUIRE(readers_of(*program.operator->(), input).contains(rule) == named.contains(input));
-      // What a run shows.
+      // The inputs that a run reads.
       std::vector<vm::Value> frame(DrawnConditions::kInputs + DrawnConditions::kRegisters);
       for (vm::Value& cell : frame)
         cell = static_cast<vm::Value>(draw.below(6));
@@ -159,7 +159,7 @@ TEST_CASE("SAFETY rules are in no index: they are evaluated in any case") {
   CHECK(readers_of(*program, 0) == std::set<unsigned>{1});
 }
 
-// --- what is evaluated ---
+// --- evaluations ---
 
 TEST_CASE("a reading costs the evaluation of the rules that read it, however many there are") {
   for (const unsigned rules : {4U, 8U, 16U, 32U}) {

@@ -1,4 +1,4 @@
-// Devices that do not answer: when that is told, how often, and what the runtime says of them.
+// Devices that do not answer: when and how often that is reported, and what the runtime says about them.
 #include "runtime-m4/layers/contact.hpp"
 
 #include <catch2/catch.hpp>
@@ -59,7 +59,7 @@ TEST_CASE(
 
   Contact there;
   CHECK(there.note(0) == News::none);
-  for (int i = 0; i < 10; ++i) {  // now and then is not silent
+  for (int i = 0; i < 10; ++i) {  // single failures do not make it silent
     CHECK(there.note(1) == News::none);
     CHECK(there.note(1) == News::none);
     CHECK(there.note(0) == News::none);
@@ -68,7 +68,7 @@ TEST_CASE(
   CHECK(there.note(1) == News::none);
   CHECK(there.note(1) == News::none);
   CHECK(there.note(1) == News::silent);
-  for (int i = 0; i < 10; ++i) {  // nor does it answer again
+  for (int i = 0; i < 10; ++i) {  // single answers do not count as answering again
     CHECK(there.note(0) == News::none);
     CHECK(there.note(0) == News::none);
     CHECK(there.note(1) == News::none);
@@ -114,7 +114,7 @@ TEST_CASE("what is known of devices belongs to the program that runs; the buses 
   robot.rig.board.acknowledges = false;
   robot.rig.board.bus_state = {.clears = 7, .held = 1};
   robot.rounds(3);
-  CHECK(robot.told("silent") == 1);  // with the first round
+  CHECK(robot.told("silent") == 1);  // in the first round
   CHECK(robot.devices().silent != 0);
   CHECK((robot.devices().bus_clears == 7 && robot.devices().held == 1));
   robot.rig.runtime.clear();

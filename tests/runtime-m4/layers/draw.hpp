@@ -1,4 +1,4 @@
-// Random numbers for tests that draw programs: the same with every library, since the engine is
+// Random numbers for tests with random programs: the same with every library, since the engine is
 // standardised and no distribution is used.
 #pragma once
 

@@ -1,6 +1,6 @@
-// No program can tell whether a step evaluates all rules of the behaviours it stirs or only those
-// it concerns, nor whether the turn of a behaviour of which it concerns a single rule takes the short way:
-// drawn programs with drawn readings, run both ways.
+// No program can tell whether a step evaluates all rules of the affected behaviours or only those
+// that it concerns, nor whether the turn of a behaviour with a single concerned rule takes the fast path:
+// random programs with random readings, run both ways.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -21,13 +21,13 @@ using test::Rig;
 
 namespace {
 
-// The trace, and how many conditions were evaluated.
+// The trace, and the number of conditions that were evaluated.
 struct Outcome {
   std::vector<std::string> lines;
   std::uint32_t evaluations;
 };
 
-// A reading of one of the image's channels: somewhere in its range, or where a rule decides.
+// A reading of one of the image's channels: anywhere in its range, or at a rule's threshold.
 vm::Value reading(const vm::Image& image, std::size_t channel, Draw& draw) {
   const vm::Channel& config = image.channels[channel];
   if (!draw.one_in(3) && !image.constants.empty()) {
@@ -61,7 +61,7 @@ std::optional<Outcome> run(const std::vector<std::byte>& bytes, unsigned seed, b
   return Outcome{rig->lines, test::evaluations() - before};
 }
 
-// Where the traces part, and what came before.
+// Where the traces diverge, and the lines before that.
 std::string parting(const Outcome& few, const Outcome& every) {
   const auto [here, there] =
       std::mismatch(few.lines.begin(), few.lines.end(), every.lines.begin(), every.lines.end());
@@ -102,5 +102,5 @@ TEST_CASE("no program can tell whether all rules are evaluated or only those con
   CHECK(compared > 200);
   CHECK(tripped > 50);
   CHECK(concerned > 0);
-  CHECK(concerned * 3 < all * 2);  // and it is worth it
+  CHECK(concerned * 3 < all * 2);  // the index pays off
 }

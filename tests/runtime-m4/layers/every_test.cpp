@@ -1,4 +1,4 @@
-// EVERY: periods counted from activation, fixed or random; what comes too early is skipped.
+// EVERY: periods counted from activation, fixed or random; triggers that come too early are skipped.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"
@@ -35,8 +35,8 @@ TEST_CASE("periods do not drift, whatever else makes steps") {
 
 TEST_CASE("a period that is not known is asked for again when it is") {
   Robot robot("BEHAVIOR beat PRIORITY 5\nEVERY near X * 10ms\nDO LOG \"tick\"\nEND\nEND\n");
-  robot.feed(50, "X", 10);  // the period begins here, and is over at 150
-  robot.feed(155, "X", 2);  // the one under way lasts until 250; the next are 20 ms long
+  robot.feed(50, "X", 10);  // the period begins here, and ends at 150
+  robot.feed(155, "X", 2);  // the present one lasts until 250; the next are 20 ms long
   robot.run(280);
   CHECK(robot.only("log") == "150 #3 log \"tick\"\n250 #5 log \"tick\"\n270 #6 log \"tick\"\n");
 }

@@ -1,5 +1,5 @@
-// Threads that are stopped by a fault: what they took with them, what goes on, and what the safety
-// monitor does when nothing does.
+// Threads that are stopped by a fault: what stops with them, what continues, and what the safety
+// monitor does when nothing continues.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/peer.hpp"
@@ -70,7 +70,7 @@ TEST_CASE("a stopped actuator goes to its safe state, and its rule finishes") {
   CHECK(rig.board.pwm_read(3) == 0);
   rig.feed(1, 0);
   rig.run(1100);
-  rig.feed(1, 30);  // the rule fires again; its command goes nowhere, and nothing waits for it
+  rig.feed(1, 30);  // the rule fires again; its command has no effect, and nothing waits for it
   rig.run(3000);
   CHECK(rig.board.pwm_read(3) == 0);
   CHECK(rig.board.pwm_read(4) == 10'000);
@@ -104,7 +104,7 @@ TEST_CASE("a hung program is halted into its safe state and the watchdog is left
   CHECK(rig.board.pwm_read(4) == 0);
   rig.run(3000);
   CHECK(rig.board.kicks == kicks + 4);
-  CHECK(rig.board.pwm_read(3) == 0);  // the arm's thread was on its way and sends nothing more
+  CHECK(rig.board.pwm_read(3) == 0);  // the arm's thread was in a movement and sends nothing more
   CHECK(rig.only("deadline done") == "0 #1 done lamp\n1050 #1 deadline 50000\n");
   CHECK(rig.status().safety_checks == 301);
 

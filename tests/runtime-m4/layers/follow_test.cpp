@@ -1,4 +1,4 @@
-// FOLLOW: what a servo's pulses say while the value that it follows changes.
+// FOLLOW: a servo's pulses while the value that it follows changes.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -107,7 +107,7 @@ TEST_CASE(
         "0 #1 command arm MOVE to=180 over=1\n1000 #22 command arm FOLLOW to=20\n");
 }
 
-// Each round follows behind seven commands that wait, the last of them a follow.
+// Each round adds a follow after seven waiting commands, the last of which is a follow.
 TEST_CASE("a new target of a follow that waits takes no place from the command behind it") {
   Follower follower(
       "MOVE arm TO 180deg OVER 2s\n  MOVE arm TO 10deg OVER 1s\n  MOVE arm TO 20deg OVER 1s\n"

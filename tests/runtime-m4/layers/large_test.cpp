@@ -32,7 +32,7 @@ TEST_CASE("64 behaviours, 1,000 rules, 64 KB: one reading evaluates and fires th
     CHECK(test::select(rig.lines, "fire").find(" fire r" + std::to_string(rule) + " DO\n") !=
           std::string::npos);
     CHECK(test::select(rig.lines, "fire log finished").size() < 120);
-    // All rules of the channel compare with it; no other rule is looked at.
+    // All rules of the channel compare with it; no other rule is evaluated.
     const unsigned readers = (spread.rules + spread.channels - 1 - channel) / spread.channels;
     CHECK(test::evaluations() - before == readers);
   }

@@ -1,5 +1,5 @@
-// When it is the link's turn. That the step thread then waits for it, and that it answers in time: bench/answer.py,
-// tests/e2e/test_crowded.py.
+// When it is the link's turn. bench/answer.py and tests/e2e/test_crowded.py check that the step thread then waits for it, and
+// that it answers in time.
 #include "runtime-m4/layers/link_share.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr std::uint32_t kCountsAMs = 25'000;
 constexpr std::uint32_t kLightStep = 1'000;
 constexpr std::uint32_t kHeavyStep = 100'000;  // the most that a board accepts
 
-// A step thread that looks between two passes at a link that could run.
+// A step thread that checks, between two passes, whether a link that is ready gets its turn.
 struct Passes {
   LinkShare share;
   LinkShare::Look look;
@@ -33,7 +33,7 @@ struct Passes {
   }
   void ran(double for_ms) { look.run_time += static_cast<std::uint32_t>(for_ms * kCountsAMs); }
   bool is_due() { return share.is_due(look); }
-  // Looks each millisecond, when it has run for so much of it: after how many it is its turn.
+  // Checks each millisecond, of which the link has run for `part`. Returns after how many checks it is the link's turn.
   std::optional<unsigned> waits(double part = 0) {
     for (unsigned waited = 0; waited < 1000; ++waited) {
       if (is_due()) return waited;
@@ -105,7 +105,7 @@ TEST_CASE("link share: a twentieth of the time and no more, however short the tu
 TEST_CASE("link share: counts may wrap") {
   Passes passes(kHeavyStep);
   passes.takes_turn(policy::kLinkTurnMs);
-  passes.look.tick += 171'800;  // of the clock hardly any, as it has wrapped
+  passes.look.tick += 171'800;  // the clock shows hardly any time, since it has wrapped
   CHECK(passes.is_due());
   Passes light(kLightStep);
   light.look.run_time = UINT32_MAX - 100;

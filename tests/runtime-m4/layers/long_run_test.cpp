@@ -1,4 +1,4 @@
-// Programs that run for weeks: their milliseconds have 32 bits, and begin again after 49.7 days.
+// Programs that run for weeks: their milliseconds have 32 bits and wrap after 49.7 days.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -22,7 +22,7 @@ struct LongRun {
     go_on(1000);
   }
   void go_on(unsigned ms) { rig.run(rig.kernel.now() / 1000 + ms); }
-  // As if it had run for so long.
+  // Makes the state the same as if it had run for that long.
   void weeks_pass(std::uint32_t ticks) {
     rig.kernel.on_tick(ticks);
     go_on(1000);
@@ -69,7 +69,7 @@ TEST_CASE("a FEELING that has faded does not come back") {
   robot.feeds(20);
   for (unsigned part = 0; part < 8; ++part) {
     CAPTURE(part);
-    robot.weeks_pass(0x2000'0000);  // an eighth of 49.7 days: once it begins again
+    robot.weeks_pass(0x2000'0000);  // an eighth of 49.7 days: it wraps once
     robot.rig.lines.clear();
     robot.feeds(60);
     CHECK(robot.rig.board.pulse(4) == 0);

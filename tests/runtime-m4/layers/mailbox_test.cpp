@@ -1,4 +1,4 @@
-// What the safety thread asks the mailboxes for. What grows old in them is tested through the whole runtime.
+// The mailboxes' functions for the safety thread. Readings that become stale are tested with the whole runtime.
 #include "runtime-m4/layers/mailbox.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// The median of a window, against one that sorts all samples each time.
+// The median of a window, compared with one that sorts all samples each time.
 #include "runtime-m4/layers/median.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ vm::Value naive_median(std::vector<vm::Value> samples) {
   return samples[(samples.size() - 1) / 2];
 }
 
-// Few different ones, so that many are equal; and the ends of the range.
+// Few different values, so that many are equal; and the ends of the range.
 vm::Value drawn_value() {
   return *rc::gen::weightedOneOf<vm::Value>(
       {{6, rc::gen::inRange<vm::Value>(-3, 4)},

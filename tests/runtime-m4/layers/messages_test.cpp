@@ -1,5 +1,5 @@
-// A hop that skips a layer does not compile: nobody but its layer can make a message, and nobody
-// but the next layer takes it.
+// A message that skips a layer does not compile: only its own layer can make it, and only
+// the next layer can take it.
 #include "runtime-m4/layers/messages.hpp"
 
 #include <type_traits>

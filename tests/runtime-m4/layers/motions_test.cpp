@@ -1,4 +1,4 @@
-// MOTION and PERFORM: where servos are when, as a table says it.
+// MOTION and PERFORM: the servos' positions over time, according to a table.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -72,7 +72,7 @@ TEST_CASE("TIMES goes through it again without drift, AT at another speed") {
   CHECK(fast.at(150) == "30 30");
   CHECK(fast.at(250) == "90 60");
   CHECK(fast.rig().only("done") == "250 #1 done arm\n250 #1 done head\n");
-  // That speed is the motion's, in percent: no limit of the actuator's in deg/s is meant for it.
+  // The speed in percent is the motion's: an actuator's limit in deg/s does not apply to it.
   Puppet slow("PERFORM wave AT 50%", "LIMIT arm SPEED TO 20deg/s\n");
   slow.at(200);
   CHECK(slow.rig().only("command") ==
@@ -83,7 +83,7 @@ TEST_CASE("an actuator that a LIMIT makes late is never faster, and catches up w
   Puppet puppet("PERFORM wave", "LIMIT arm SPEED TO 300deg/s\n");
   CHECK(puppet.at(100) == "30 0");  // at 300 deg/s it is there at 300 ms
   CHECK(puppet.at(300) == "90 30");
-  CHECK(puppet.at(500) == "30 60");  // and goes on to the next key at once
+  CHECK(puppet.at(500) == "30 60");  // and continues to the next key immediately
   puppet.at(2000);
   CHECK(puppet.rig().only("done") == "500 #1 done head\n700 #1 done arm\n");
 }

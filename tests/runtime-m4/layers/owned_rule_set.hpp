@@ -1,4 +1,4 @@
-// A set of rules with words of its own.
+// A set of rules that owns its words.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// From triggers to commands: who runs, who is interrupted, in which order actuators work.
+// From triggers to commands: which responses run, which are interrupted, and the order of the actuators' commands.
 #include <sstream>
 #include <string>
 
@@ -129,7 +129,7 @@ TEST_CASE("eight commands wait for an actuator, more are dropped, which is said 
   std::string program = "WHEN near X > 10\nDO\n";
   for (int i = 1; i <= 10; ++i)
     program += "MOVE a FOR " + std::to_string(i) + "ms\n";
-  // There are places enough for all of them; those of another actuator are its own.
+  // There are enough places for all of them; each actuator has its own.
   Robot robot(program + "MOVE b FOR 7ms\nEND\n");
   robot.feed(0, "X", 20);
   robot.run(200);
@@ -173,7 +173,7 @@ TEST_CASE("a cancelled queue gives its places back and never runs") {
   CHECK(robot.only("command") == expected);
 }
 
-// Whatever ranks their threads have, which other behaviours decide.
+// Whatever the ranks of their threads, which depend on other behaviours.
 TEST_CASE("what an actuator has done at a time is over before anything else of that time") {
   for (const char* const other :
        {"", "BEHAVIOR top PRIORITY 90\n  WHEN far Y > 50\n  DO MOVE d\n  END\nEND\n"}) {

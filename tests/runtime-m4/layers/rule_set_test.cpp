@@ -1,4 +1,4 @@
-// Sets of rules against std::set, of as many rules as a program may have, and at the edges of words.
+// Sets of rules compared with std::set, with as many rules as a program may have, and at word boundaries.
 #include <set>
 #include <vector>
 
@@ -30,7 +30,7 @@ void check_same(const RuleSet& set, const std::set<unsigned>& model) {
   }
 }
 
-// The rules of a behaviour, in this set, and in this or another one; then only those of them that are in the other.
+// A behaviour's rules in this set, and in this set or another; then only those of them that are in the other.
 template <unsigned kRules>
 void check_range(RuleSet& set, const RuleSet& other, unsigned first, unsigned end) {
   std::vector<unsigned> mine;
@@ -93,7 +93,7 @@ void behaves_like_a_set(const std::vector<std::uint16_t>& operations) {
         model.insert(other_model.begin(), other_model.end());
         break;
       default:
-        if (rule % 4 != 0) break;  // not so often that nothing is ever in it
+        if (rule % 4 != 0) break;  // rarely, or the set would always be empty
         set.clear();
         model.clear();
     }

@@ -1,5 +1,5 @@
-// A program of many rules that have nothing to do with each other, and its robot: rule r fires when
-// channel r modulo the number of channels is measured as kFirstValue + r / the number of channels.
+// A program of many independent rules, and its robot: rule r fires when
+// channel r modulo the number of channels measures kFirstValue + r / the number of channels.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@ namespace robosync::test {
 
 struct Spread {
   unsigned rules;
-  unsigned behaviors;     // the rules are dealt out in equal parts
+  unsigned behaviors;     // each gets an equal share of the rules
   unsigned channels;      // in sensors of 8
-  std::string text = "";  // of each rule's LOG, behind its number
+  std::string text = "";  // in each rule's LOG, after its number
 
-  static constexpr int kFirstValue = 10;  // so that 0 means nothing to any rule
+  static constexpr int kFirstValue = 10;  // so that no rule reacts to 0
 
   unsigned channel_of(unsigned rule) const { return rule % channels; }
   int value_of(unsigned rule) const { return kFirstValue + static_cast<int>(rule / channels); }

@@ -1,4 +1,4 @@
-// From readings to steps: what is news, what is unknown, when a step begins.
+// From readings to steps: which readings are news or unknown, and when a step begins.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"
@@ -77,7 +77,7 @@ END
 TEST_CASE("a fed channel becomes unknown when no reading comes, and is back with the next") {
   Robot robot(kWatchX, with_channel(R"("range": [0, 100], "stale_after": "200ms")"));
   robot.feed(0, "X", 20);
-  robot.feed(150, "X", 20);   // no news, but it is alive
+  robot.feed(150, "X", 20);   // no news, but a sign of life
   robot.feed(1000, "X", 20);  // the same value is news now; the rule still remembers that it held
   robot.feed(1100, "X", 5);
   robot.feed(1200, "X", 20);

@@ -1,4 +1,4 @@
-// The time words in rules, and what COOLDOWN, WAITING and RESTARTING make of triggers.
+// The time words in rules, and the effect of COOLDOWN, WAITING and RESTARTING on triggers.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"
@@ -34,7 +34,7 @@ TEST_CASE("TIMES WITHIN: so many rising edges inside a window, then it counts an
   std::string at;
   for (const std::string& line : robot.lines())
     if (line.find(" log ") != std::string::npos) at += line.substr(0, line.find(' ')) + " ";
-  // 600, 1200, 1500 lie inside a second, then 1800, 2000, 2200.
+  // 600, 1200, 1500 are within a second, then 1800, 2000, 2200.
   CHECK(at == "1500 2200 ");
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("each side of a WHEN/ELSE cools down by itself, and the rule ends on i
   robot.feed(200, "X", 5);
   robot.feed(300, "X", 20);   // DO cools down until 1000
   robot.feed(1100, "X", 5);   // ELSE until 1200 …
-  robot.feed(1150, "X", 20);  // … and is not wanted then
+  robot.feed(1150, "X", 20);  // … and is not chosen any more then
   robot.run(5000);
   CHECK(robot.only("fire win interrupt") ==
         "0 #1 fire r0 DO\n0 #1 win r0 DO\n"

@@ -1,4 +1,4 @@
-// Whole programs on the whole runtime: what comes out of the robot, event by event.
+// Whole programs on the whole runtime: the robot's trace, event by event.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"

@@ -1,4 +1,4 @@
-// What is set, who is heard when several set, and what enters the next step.
+// Setting variables, which value counts when several rules set one, and what the next step sees.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"

@@ -1,4 +1,4 @@
-// WHILE: as long as its condition is true and its actuators are to be had.
+// WHILE: runs as long as its condition is true and its actuators are available.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/robot.hpp"

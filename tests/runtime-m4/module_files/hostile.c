@@ -1,4 +1,4 @@
-// A module that breaks its word. It is compiled once for each way of doing so, HOW, into HOW.so; `well` keeps it.
+// A module that violates its contract. It is compiled once for each way of doing so, HOW, into HOW.so; `well` keeps the contract.
 #include <errno.h>
 #include <fcntl.h>
 #include <stddef.h>
@@ -54,7 +54,7 @@ enum how {
   boundless,
   free_of_cost,
   crashes_in_cost,
-  crashes_when_firm,  // with a parameter that is not the usual one
+  crashes_when_firm,  // with a parameter that is not the default
   out_of_range,
   untrue_mask,
   reads_its_scratch,
@@ -72,7 +72,7 @@ typedef struct state {
 static int32_t kept;
 static const int32_t constant = 1;
 
-// Each way by itself, of a file that is there.
+// Tries each way separately, with a file that exists.
 static void write_a_file(void) {
   static const int ways[] = {O_WRONLY, O_RDWR, O_RDONLY | O_CREAT, O_RDONLY | O_TRUNC,
                              O_WRONLY | O_APPEND};
@@ -122,14 +122,14 @@ static int deeper(volatile int* depth) {
   return here[0] > 0 ? deeper(here) + here[1] : 0;
 }
 
-// The line to who has started it is 3; all else that is open would be somebody's.
+// File descriptor 3 is the line to the parent process; any other open one would belong to somebody.
 enum { LINE = 3, LAST = 63 };
 
 static void call_the_system(void) {
   const char byte = 1;
   if (how == calls_the_system) (void)getppid();
 #if defined(__x86_64__)
-  // 15 is chmod() where 32 bits are usual, and here a call that answers need.
+  // 15 is chmod() on a 32-bit machine; on x86-64 it is rt_sigreturn, which is allowed.
   if (how == calls_as_another_machine) __asm__ volatile("int $0x80" ::"a"(15), "b"(0), "c"(0));
 #endif
   if (how == opens_a_file) (void)open("/dev/null", O_RDONLY);

@@ -1,4 +1,4 @@
-# A module that breaks its word, compiled once for each way in which it can: those of `enum how`. HOSTILE_MODULES is where they are.
+# A module that violates its contract, compiled once for each way in `enum how`. HOSTILE_MODULES is the folder.
 set(hostile ${CMAKE_CURRENT_SOURCE_DIR}/runtime-m4/module_files/hostile.c)
 set(HOSTILE_MODULES ${CMAKE_CURRENT_BINARY_DIR}/hostile)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hostile})

@@ -1,4 +1,4 @@
-// A module in a process of its own: it works as it does in the firmware, and whatever it does instead is said in one line.
+// A module in its own process: it works as in the firmware, and any violation is reported in one line.
 #include "runtime-m4/module_files/process.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::string hostile(const std::string& how) {
   return HOSTILE_MODULES "/" + how + ".so";
 }
 
-// Loads the module and gives it a sample, as far as that goes.
+// Loads the module and gives it a sample, as far as possible.
 std::string trouble_of(const std::string& how) {
   Process module(hostile(how));
   const module_files::Config config = {1000};
@@ -64,7 +64,7 @@ const std::map<std::string, std::string> kTroubles = {
     {"into_a_constant", "it touched memory that is not its own, in process()"},
     {"calls_the_system", "it called the operating system, in process()"},
     {"opens_a_file", "it called the operating system, in process()"},  // even to read it
-    {"writes_to_what_is_open", ""},  // nothing is, but the line to this process
+    {"writes_to_what_is_open", ""},  // only the line to this process is open
     {"ends_its_process", "it ended its process, in process()"},
     {"divides_by_zero",
      "it divided by zero, overflowed, or did something else that C does not define, in process()"},
@@ -94,7 +94,7 @@ const std::map<std::string, std::string> kMistakes = {
     {"crashes_while_loaded", "it touched memory that is not its own, while it was loaded"},
 };
 
-// A working directory of the test's own, until it ends: what a module writes into, and may not, has a name without one.
+// The test's own working directory, until its end: the files that a module tries to write have names without a folder.
 class Elsewhere {
 public:
   Elsewhere() : before_(std::filesystem::current_path()) {
@@ -147,7 +147,7 @@ TEST_CASE("a module that does not describe what the interface asks for is not us
 TEST_CASE("a module in a file works as one of the firmware, and several algorithms share it") {
   const module_files::Loaded loaded = module_files::load(hostile("well"));
   REQUIRE(loaded.description != nullptr);
-  CHECK(module_files::load(hostile("well")).number == loaded.number);  // it is there already
+  CHECK(module_files::load(hostile("well")).number == loaded.number);  // it is already loaded
   const robosync_description& names = *loaded.description;
   CHECK(std::string(names.name) == "hostile");
   CHECK(std::string(names.outputs[0].labels[1]) == "yes");
@@ -169,7 +169,7 @@ TEST_CASE("a module in a file works as one of the firmware, and several algorith
   CHECK(static_cast<std::int32_t>(state_of_b) == 0);
 }
 
-// ---- what a module says of itself
+// ---- a module's description
 
 namespace {
 
@@ -261,7 +261,7 @@ TEST_CASE("more words than there is room for are not read") {
   CHECK(words_of(255) == "it has too many words");
 }
 
-// ---- who uses modules
+// ---- users of modules
 
 TEST_CASE("a module in trouble fails, changes nothing of its algorithm, and is told of") {
   const std::string file = hostile("crashes");
@@ -269,7 +269,7 @@ TEST_CASE("a module in trouble fails, changes nothing of its algorithm, and is t
   REQUIRE(loaded.description != nullptr);
   const robosync_module& module = *loaded.description->module;
   const std::int32_t config[] = {1000}, input[] = {2000};
-  std::vector<std::byte> state(8);  // no more: it is its own only so far
+  std::vector<std::byte> state(8);  // no more: it may only use this much
   std::int32_t outputs[2] = {7, 7};
   const robosync_block block = {input, outputs, config};
   module.init(state.data(), config, 20);
@@ -278,7 +278,7 @@ TEST_CASE("a module in trouble fails, changes nothing of its algorithm, and is t
     CHECK(module.process(state.data(), nullptr, &block) == ROBOSYNC_FAILED);
   CHECK((outputs[0] == 7 && outputs[1] == 7));
   CHECK(std::ranges::all_of(state, [](std::byte byte) { return byte == std::byte{9}; }));
-  CHECK(module.state_bytes(config) > ROBOSYNC_MOST_BYTES);  // nobody takes it
+  CHECK(module.state_bytes(config) > ROBOSYNC_MOST_BYTES);  // so it is refused
   const std::string what = "it touched memory that is not its own, in process()";
   CHECK(module_files::troubles() == std::vector<std::string>{file + ": " + what});
   CHECK(module_files::load(file).why_not == what);
@@ -326,7 +326,7 @@ TEST_CASE("a module that answers and then is gone is noticed when it is next ask
   CHECK(module.trouble() == "it ended its process, in process()");
 }
 
-// Seconds of the processes that have ended.
+// Processor seconds of the processes that have ended.
 static double seconds_of_children() {
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);
@@ -334,7 +334,7 @@ static double seconds_of_children() {
          static_cast<double>(used.ru_utime.tv_usec) / 1e6;
 }
 
-// The last one: it takes half a minute, of which it waits for the most.
+// The last test: it takes half a minute, most of it waiting.
 TEST_CASE("one that goes on is ended when it has had its second, one that waits later") {
   const std::string why = "it did not come to an end within a second, ";
   for (const auto& [how, where] : std::map<std::string, std::string>{
@@ -343,5 +343,5 @@ TEST_CASE("one that goes on is ended when it has had its second, one that waits 
     CHECK(trouble_of(how) == why + where);
     CHECK(seconds_of_children() - before < 3);
   }
-  CHECK(trouble_of("waits") == why + "in process()");  // it takes no time of the computer
+  CHECK(trouble_of("waits") == why + "in process()");  // it uses no processor time
 }

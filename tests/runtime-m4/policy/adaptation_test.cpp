@@ -1,4 +1,4 @@
-// Adaptive priorities against the formula in wide arithmetic, and what it promises whatever the
+// Adaptive priorities compared with the formula in wide arithmetic, and the formula's guarantees for any
 // numbers.
 #include "runtime-m4/policy/adaptation.hpp"
 

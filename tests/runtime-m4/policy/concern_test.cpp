@@ -1,4 +1,4 @@
-// Which inputs code reads or sets, operand by operand.
+// The inputs that code reads or sets, operand by operand.
 #include "runtime-m4/policy/concern.hpp"
 
 #include <array>

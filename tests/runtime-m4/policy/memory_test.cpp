@@ -1,5 +1,5 @@
-// What a program needs of a board's memory, for drawn images: that the layout keeps what the MPU and
-// the closed parts ask for, and that no part is forgotten.
+// The memory that a program needs on a board, for random images: the layout meets the requirements of the MPU and
+// of the closed parts, and no part is forgotten.
 #include "runtime-m4/policy/memory.hpp"
 
 #include <vector>
@@ -14,9 +14,9 @@ namespace {
 
 constexpr BoardMemory kBoard = {
     .arena_begin = 0x2000'4000, .arena_bytes = 112 * 1024, .step_budget = 100'000};
-constexpr std::uint32_t kSafety = 2;  // rules of the first behaviour, when it is SAFETY
+constexpr std::uint32_t kSafety = 2;  // rules of the first behaviour, if it is SAFETY
 
-// An image of which only what counts is there.
+// An image with only the relevant parts.
 struct Drawn {
   vm::ImageHeader header{};
   std::vector<vm::Sensor> sensors;
@@ -96,7 +96,7 @@ std::uint32_t sum_of_parts(const Needs& needs, Region region) {
   return bytes;
 }
 
-// Does the region cover the address? As the core reads the two registers.
+// Does the region cover the address? Interprets the two registers as the core does.
 bool covers(const regions::Region& region, std::uint32_t address) {
   if ((region.size_and_eighths & 1) == 0) return false;
   const std::uint32_t size = 2U << (region.size_and_eighths >> 1 & 0x1F);
@@ -113,11 +113,11 @@ void check_layout(const Needs& needs, const BoardMemory& board) {
   RC_ASSERT(needs.closed >= sum_of_parts(needs, Region::closed));
   RC_ASSERT(needs.closed % kStackUnit == 0);
   RC_ASSERT(needs.total >= needs.writable_begin + needs.writable + needs.closed);
-  // What is writable has a window that covers exactly that.
+  // A window covers exactly the writable memory.
   const std::uint32_t writable = board.arena_begin + needs.writable_begin;
   const regions::Window window = regions::finest_window(writable, needs.writable);
   RC_ASSERT(needs.writable == 0 || window.lower.size_and_eighths != 0);
-  // The region over what is open has nothing of the closed parts, nor what stands before the arena.
+  // The region over the open parts covers none of the closed ones, and nothing before the arena.
   const regions::Region open = regions::cover(board.arena_begin, board.arena_begin + image_end);
   RC_ASSERT(covers(open, board.arena_begin));
   RC_ASSERT(covers(open, board.arena_begin + image_end - 1));
@@ -125,7 +125,7 @@ void check_layout(const Needs& needs, const BoardMemory& board) {
   RC_ASSERT(!covers(open, board.arena_begin + needs.total - needs.closed));
 }
 
-// Wherever the stacks before it end there is a window of the MPU for what SAFETY's bytecode writes, inside of its part.
+// Wherever the stacks before it end, an MPU window for the memory that SAFETY's bytecode writes fits into its part.
 void check_safety_window(const Counts& counts) {
   const regions::Fit fit = safety_window(counts);
   const std::uint32_t bytes = bytes_of(Part::safety_region, counts);
@@ -165,12 +165,12 @@ TEST_CASE("a layout keeps apart what threads without privileges may use, and the
   const bool holds = rc::check([] {
     const Drawn drawn = draw();
     const Needs needs = drawn.needs();
-    // The borders waste an eighth here and there, and no more.
+    // Alignment wastes at most an eighth here and there.
     const std::uint32_t parts = sum_of_parts(needs, Region::open) + needs.image +
                                 sum_of_parts(needs, Region::writable) +
                                 sum_of_parts(needs, Region::closed);
     RC_ASSERT(needs.total <= parts + parts / 2 + 1024);
-    if (needs.total > 128 * 1024 - 0x4000) return;  // it does not fit, and is not laid out
+    if (needs.total > 128 * 1024 - 0x4000) return;  // does not fit, so there is no layout
     check_layout(needs, kBoard);
     const auto shares = shares_of(needs);
     std::uint32_t all = 0;

@@ -1,4 +1,4 @@
-// What a rule may do when, and who gives way to whom.
+// What a rule may do and when, and which rule gives way.
 #include "runtime-m4/policy/rules.hpp"
 
 #include <array>

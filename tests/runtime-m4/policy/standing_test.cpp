@@ -1,4 +1,4 @@
-// Who outranks whom.
+// Which thread outranks which.
 #include "runtime-m4/policy/standing.hpp"
 
 #include <catch2/catch.hpp>

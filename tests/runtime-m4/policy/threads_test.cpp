@@ -1,4 +1,4 @@
-// Which threads a program has, and which behaviours need each.
+// The threads of a program, and the behaviours that need each of them.
 #include "runtime-m4/policy/threads.hpp"
 
 #include <array>
@@ -61,7 +61,7 @@ TEST_CASE("who needs a thread") {
     return policy::needs(robot.image, behavior, category, index, reads);
   };
   using policy::Category;
-  CHECK(needs(0, Category::sensor, 0, true));  // what SAFETY reads is sampled at its priority
+  CHECK(needs(0, Category::sensor, 0, true));  // SAFETY's inputs are sampled at its priority
   CHECK_FALSE(needs(1, Category::sensor, 0, false));
   CHECK(needs(2, Category::behavior, 2));
   CHECK_FALSE(needs(1, Category::behavior, 2));

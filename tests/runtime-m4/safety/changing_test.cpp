@@ -1,4 +1,4 @@
-// A person's stop and resume while one program takes the place of another: whenever they come, they hold.
+// A person's stop and resume while one program replaces another: they take effect whenever they come.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -25,7 +25,7 @@ const char* const kChangingProgram =
     "EVERY 50ms\nDO\n  RUN motor TO 70%\nEND\n"
     "AT START\nDO MOVE arm TO 100deg AT 100deg/s\nEND\n";
 
-// Uploads from a thread, as the link does: so the safety thread comes in between, wherever it is called.
+// Uploads from a thread, as the link does, so that the safety thread preempts it wherever it is signalled.
 struct Changing {
   Changing() {
     REQUIRE(kernel.add(link, {.name = "link",
@@ -44,7 +44,7 @@ struct Changing {
       places = 0;
       is_running = rig.activate(next).ok();
       last = places;
-      places = 1U << 31U;  // no more of them count
+      places = 1U << 31U;  // stops counting
     }
   }
   void go_on(unsigned ms) { rig.run(kernel.now() / 1000 + ms); }
@@ -64,14 +64,14 @@ struct Changing {
   kernel::Thread link;
   std::vector<std::byte> next;
   bool is_running = false;
-  unsigned places = 1U << 31U;  // that the board or the trace was called at, in this upload
+  unsigned places = 1U << 31U;  // calls of the board or the trace in this upload
   unsigned last = 0;            // of the last upload
   unsigned act_at = 0;
   std::function<void()> act;
 };
 
-// Uploads `program` into a robot that `prepare` has made ready, again and again, and has `act` happen at another place each
-// time; then `check` looks.
+// Uploads `program` again and again into a robot that `prepare` has made ready, calls `act` at another place each
+// time, and then `check`.
 template <class Prepare, class Act, class Check>
 void at_each_place(const std::vector<std::byte>& program, Prepare prepare, Act act, Check check) {
   unsigned last = 1;
@@ -83,7 +83,7 @@ void at_each_place(const std::vector<std::byte>& program, Prepare prepare, Act a
     robot.act = [&] { act(robot.runtime); };
     robot.upload(program);
     last = robot.last;
-    if (last < place) break;  // it did not come
+    if (last < place) break;  // the place was not reached
     robot.go_on(500);
     check(robot);
   }
@@ -118,9 +118,9 @@ TEST_CASE("a stop reaches the pins of the program that goes, at once") {
   Changing robot;
   robot.upload(program);
   robot.go_on(2000);
-  std::vector<std::uint32_t> seen;  // on the motor, whenever a pin is looked at or written
+  std::vector<std::uint32_t> seen;  // on the motor, at every access to a pin
   robot.board.on_pin = nullptr;
-  robot.act_at = 1;  // its only event before the next program is there: that it comes
+  robot.act_at = 1;  // the only event before the next program is there: its activation
   robot.act = [&] {
     robot.runtime.stop();
     robot.rig.on_event = nullptr;
@@ -128,7 +128,7 @@ TEST_CASE("a stop reaches the pins of the program that goes, at once") {
   };
   robot.upload(program);
   REQUIRE_FALSE(seen.empty());
-  CHECK(seen.back() == 0);  // long before the next one has looked at its pins
+  CHECK(seen.back() == 0);  // long before the next program uses its pins
   CHECK(robot.is_off());
 }
 

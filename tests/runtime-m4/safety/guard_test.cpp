@@ -1,5 +1,5 @@
-// The output guard by itself, and under the whole runtime: drawn sequences of whatever can happen, against what it
-// promises. The board notes every pulse that leaves it, so nothing that was wrong for a moment is missed.
+// The output guard alone, and in the whole runtime: random sequences of anything that can happen, checked against its
+// guarantees. The board records every pulse, so that even a momentary error is not missed.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -24,14 +24,14 @@ constexpr policy::PinLimit kLimits[] = {
 constexpr policy::BoardPins kPins = {
     .outputs = kLimits, .inputs = {}, .analog = {}, .enables = {}, .i2c_buses = 1};
 constexpr std::uint16_t kOutputs = 7;
-constexpr unsigned kLongestStep = 20;  // ms that one change may make up for
+constexpr unsigned kLongestStep = 20;  // most ms that one change may cover
 
 bool is_allowed(std::uint16_t pin, std::uint32_t pulse) {
   const policy::PinLimit* const limit = policy::limit_of(kPins, pin);
   return pulse == 0 || (limit != nullptr && pulse >= limit->shortest && pulse <= limit->longest);
 }
 
-// How far may the pulse of the pin have come, `passed` milliseconds after it was `before`?
+// May the pulse of the pin have changed from `before` to `after` in `passed` milliseconds?
 bool is_slow_enough(std::uint16_t pin, std::uint32_t before, std::uint32_t after, unsigned passed) {
   const policy::PinLimit& limit = *policy::limit_of(kPins, pin);
   if (limit.rise == 0 || after == 0 || after == before) return true;
@@ -67,7 +67,7 @@ bool may_drive(const vm::Actuator& actuator) {
   return policy::can_drive(actuator, kPins);
 }
 
-// Actuators on some of the pins, two of which are no outputs. No pin has two.
+// Actuators on some of the pins, two of which are not outputs. No pin has two actuators.
 std::vector<vm::Actuator> drawn_robot(test::Draw& draw) {
   constexpr std::uint16_t kPinsAndMore = 9;
   std::vector<vm::Actuator> robot;
@@ -83,7 +83,7 @@ std::vector<vm::Actuator> drawn_robot(test::Draw& draw) {
   return robot;
 }
 
-// Is `after` what halting the actuator makes of the pulse `before`? A servo rests at the least pulse, and may need
+// Is `after` a correct pulse after halting the actuator at the pulse `before`? A servo rests at the shortest pulse, and may need
 // time to get there.
 bool is_safe(const vm::Actuator& actuator, std::uint32_t before, std::uint32_t after) {
   if (vm::gives_power(actuator.driver) || actuator.safe == vm::Release::coast) return after == 0;
@@ -92,7 +92,7 @@ bool is_safe(const vm::Actuator& actuator, std::uint32_t before, std::uint32_t a
   return limit.rise != 0 ? after <= before : after == std::max<std::uint32_t>(500, limit.shortest);
 }
 
-// A guard on a board with kPins, its programs, and what was seen on the pins so far.
+// A guard on a board with kPins, its programs, and the pulses seen on the pins so far.
 struct Bench {
   Bench() { board.board_pins = kPins; }
 
@@ -131,7 +131,7 @@ TEST_CASE("a pin is driven only for an actuator of the program") {
 TEST_CASE("a safe state beside the range of its pin ends where the range does") {
   Bench bench;
   vm::Actuator resting = on_pin(4);
-  resting.safe = vm::Release::rest;  // 500 us, as the image has it
+  resting.safe = vm::Release::rest;  // 500 us, according to the image
   bench.own({resting});
   bench.guard.drive(0, 1'010, 0);
   bench.guard.halt(1);
@@ -196,7 +196,7 @@ TEST_CASE("nothing begins to move because it is halted") {
   bench.guard.let_go(0b1);
   bench.guard.drive(0, 1800, 0);
   bench.own({rests},
-            0b1);  // a program that comes while all is stopped: it has a safe state of its own
+            0b1);  // a program that comes while everything is stopped has its own safe state
   CHECK(bench.pulse(0) == 500);
   bench.guard.drive(0, 600, 0);
   CHECK(bench.pulse(0) == 500);
@@ -279,7 +279,7 @@ TEST_CASE("each pin of a motor keeps its own limits") {
     bench.guard.go_on(kernel::milliseconds(ms));
   CHECK(bench.pulse(6) == 10'000);
   bench.guard.drive_either(0, 3'000, 2'000'000);
-  CHECK(bench.pulse(1) == 3'000);  // at once, as its pin lets it
+  CHECK(bench.pulse(1) == 3'000);  // immediately, as its pin allows
   bench.guard.go_on(2'010'000);
   CHECK(bench.pulse(6) == 0);
 }
@@ -302,7 +302,7 @@ TEST_CASE("a motor that runs backward runs on in a program that has it, and in n
   bench.own({motor(1, 2)});
   bench.guard.drive_either(0, -7'000, 0);
   bench.own({motor(1, 2)});
-  bench.guard.drive_either(0, 7'000, 0);  // which way it ran is known
+  bench.guard.drive_either(0, 7'000, 0);  // its direction is known
   CHECK(bench.pulse(2) == 0);
   CHECK(bench.pulse(1) == 7'000);
 }
@@ -323,7 +323,7 @@ TEST_CASE("what has one pin has no other way; and a pin that is a servo's drives
     CHECK(bench.pulse(pin) == 0);
 }
 
-// Random actuators on random pins, and random words of drivers that know no limit.
+// Random actuators on random pins, and random calls of drivers without any limits.
 TEST_CASE(
     "how fast a pulse may change is a matter of the pin, whatever the program before had there") {
   Bench bench;
@@ -356,7 +356,7 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
       const unsigned actuator = draw.below(8);
       bool held = true;         // halted actuators must not have moved
       bool begins = false;      // a new program, which may begin with one step
-      std::uint32_t fresh = 0;  // … but those that are now
+      std::uint32_t fresh = 0;  // … except those halted just now
       switch (draw.below(10)) {
         case 0: {
           bench->own(drawn_robot(draw));
@@ -385,7 +385,7 @@ TEST_CASE("no sequence widens a limit, nor drives a pin that no running program 
           held = false;
           break;
         case 5:
-          if (draw.one_in(4)) {  // a reset: the pins go off, and nothing is known of before
+          if (draw.one_in(4)) {  // a reset: the pins go off, and the past is forgotten
             bench.emplace();
             before = {};
             halted = 0;

@@ -1,5 +1,5 @@
 // What an image cannot do, however it was made: reach a pin that is not its own or not an output, blind the SAFETY
-// rules, command what its rules have not declared, or leave a motor running when it goes.
+// rules, command what its rules have not declared, or leave a motor running when it ends.
 #include <functional>
 
 #include <catch2/catch.hpp>
@@ -49,7 +49,7 @@ std::vector<std::byte> program() {
   return test::compile(kProgram, kRobot);
 }
 
-// The program with one thing changed in its tables, and a right checksum.
+// The program with one change in its tables, and a correct checksum.
 using Change =
     std::function<void(vm::Sensor&, vm::Channel&, vm::Actuator& arm, vm::Actuator& motor)>;
 std::vector<std::byte> patched(const Change& change, std::string_view sensor = "touch") {
@@ -182,7 +182,7 @@ TEST_CASE("a pin that is no input of the board, or an actuator's, is not read") 
   CHECK(refused(takes, "button") == Refusal::shared_pin);
   const auto drives = [](auto& button, auto&, auto& arm, auto&) { arm.pin = button.address; };
   CHECK(refused(drives, "button") == Refusal::shared_pin);
-  // Where the button has another pin, this one is still no output.
+  // Even if the button has another pin, this one is still not an output.
   const auto swaps = [](auto& button, auto&, auto& arm, auto&) {
     arm.pin = button.address;
     button.address = 41;
@@ -267,7 +267,7 @@ TEST_CASE("nothing is driven when no program runs") {
   CHECK(rig.board.pwm_read(4) == 0);
 }
 
-// What a behaviour's thread puts out is not believed: its rule has declared what it commands. Here its code is
+// Commands from a behaviour's thread are not trusted: its rule has declared what it commands. Here its code is
 // damaged after it was verified.
 TEST_CASE("a command to an actuator that the rule does not have goes nowhere") {
   Rig rig;

@@ -1,4 +1,4 @@
-// SAFETY rules: what halts, when, for how long, and what a halted actuator means for the rest.
+// SAFETY rules: what halts, when, for how long, and the effect of a halted actuator on everything else.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -95,7 +95,7 @@ TEST_CASE("what is unknown trips before the first step; a reading at once is in 
 
 namespace {
 
-// A program with kGuarded's rule, on a sensor that is asked every 20 ms, and what moves at once.
+// A program with kGuarded's rule, on a sensor that is sampled every 20 ms, and an actuator that moves immediately.
 const char* const kSampled = R"({
   "sensors": [{"name": "far", "type": "I2C", "device": "i2c_register", "address": "0x10",
                "channels": {"Y": {"range": [0, 100], "rate": "50Hz", "unit": "%"}}}],
@@ -188,7 +188,7 @@ TEST_CASE("when a silent sensor trips does not depend on when the program began"
       REQUIRE(rig.activate(image).ok());
       rig.lines.clear();
       rig.feed(1, 2, 3);
-      rig.feed(0, 1, 208);  // what the rule does not read makes nobody look
+      rig.feed(0, 1, 208);  // the rule does not read this, so it is not checked
       rig.run(phase + 1000);
       CHECK(rig.only("trip") == "0 #0 trip r0\n210 #3 trip r0\n");
     }
@@ -215,7 +215,7 @@ TEST_CASE("a pin that may not change at once goes on by itself until it is there
   CHECK(rig.board.pwm_read(kSlow) == 1000);
 }
 
-// The step thread would note that the reading is too old; SAFETY does not wait for it.
+// The step thread would notice that the reading is too old; SAFETY does not wait for it.
 TEST_CASE("a silent sensor trips although no step comes") {
   const auto image = guarded_with_stale_after("20ms");
   Rig rig;
@@ -227,7 +227,7 @@ TEST_CASE("a silent sensor trips although no step comes") {
   CHECK(rig.only("trip") == "30 #1 trip r0\n");
 }
 
-// The safety thread outranks the one that serves what is fed, and delivers it first.
+// The safety thread outranks the one that serves fed readings, and delivers them first.
 TEST_CASE("what is fed at the moment at which it would be too old comes in time") {
   Rig rig;
   REQUIRE(rig.activate(guarded_with_stale_after("29ms")).ok());
@@ -401,7 +401,7 @@ vm::Word& halt_of(const vm::Image& image, unsigned rule) {
 
 }  // namespace
 
-// What SAFETY's bytecode puts out is not believed either: what a rule halts was counted when it was verified. Here its
+// SAFETY's bytecode is not trusted either: the actuators that a rule halts were determined when it was verified. Here its
 // code is damaged afterwards.
 TEST_CASE("a tripped rule halts nothing that the verified one did not") {
   Rig rig;

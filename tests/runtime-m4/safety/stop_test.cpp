@@ -1,4 +1,4 @@
-// A person's stop: at any time, whatever runs or comes, until the person's resume.
+// A person's stop: at any time, whatever runs or is activated, until the person's resume.
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/layers/draw.hpp"
@@ -64,7 +64,7 @@ TEST_CASE("stop puts all outputs into their safe state at once, and they stay th
   rig.runtime.resume();
   rig.feed(0, 5);
   rig.run(2100);
-  CHECK(all_off(rig));  // what was interrupted does not go on by itself
+  CHECK(all_off(rig));  // interrupted commands do not continue on their own
   rig.feed(0, 20);
   rig.run(2500);
   CHECK(rig.board.pwm_read(4) == 14'000);
@@ -123,12 +123,12 @@ TEST_CASE("where SAFETY and a stop both halt, each is told of what it has done")
     return rig.lines.empty() ? "" : rig.only("lose").substr(rig.only("lose").rfind("lose"));
   };
   CHECK(rises(200) == "lose r2 DO to stop\n");
-  rig.feed(0, 95);  // the rule trips while all are stopped, …
+  rig.feed(0, 95);  // the rule trips while everything is stopped, …
   rig.run(300);
-  rig.runtime.resume();  // … and holds the motor when they are not
+  rig.runtime.resume();  // … and still holds the motor after the resume
   rig.feed(0, 85);
   rig.run(400);
-  rig.feed(0, 5);  // it lets go
+  rig.feed(0, 5);  // the rule lets go
   rig.run(500);
   rig.feed(0, 20);
   rig.run(600);
@@ -138,10 +138,10 @@ TEST_CASE("where SAFETY and a stop both halt, each is told of what it has done")
   CHECK(rig.only("interrupt").ends_with("interrupt r2 by b0\n"));
   rig.runtime.stop();
   rig.run(800);
-  CHECK(rises(900) == "lose r2 DO to stop\n");  // the rule has let go meanwhile
+  CHECK(rises(900) == "lose r2 DO to stop\n");  // the rule has let go in the meantime
 }
 
-// Its motor is commanded by itself, and again and again: it runs as soon as it may.
+// Its motor is commanded again and again without a trigger: it runs as soon as it may.
 TEST_CASE(
     "resume leaves halted what a SAFETY rule halts, and the rule's own end leaves stopped what "
     "is") {
@@ -186,7 +186,7 @@ TEST_CASE("the board's limits hold whatever the robot's file says") {
   CHECK(rig.board.pwm_read(34) == 10'000);
 }
 
-// Uploads of images with damaged tables, readings, stops, resumes and cleared programs, in any order.
+// Uploads of images with damaged tables, readings, stops, resumes and program ends, in any order.
 TEST_CASE("no image, reading or stop drives what it must not") {
   test::Draw draw(17);
   const std::vector<std::byte> good = moving_program();
@@ -240,7 +240,7 @@ TEST_CASE("no image, reading or stop drives what it must not") {
     }
     rig.run(rig.kernel.now() / 1000 + draw.below(40));
     for (auto& entry : rig.board.pulses) {
-      const std::uint16_t pin = entry.first;  // clang 14 lets no lambda name what is bound
+      const std::uint16_t pin = entry.first;  // clang 14: lambdas cannot capture bindings
       auto& pulses = entry.second;
       const policy::PinLimit* const limit = policy::limit_of(boards::kPins, pin);
       REQUIRE(limit != nullptr);

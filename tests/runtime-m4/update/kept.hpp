@@ -1,4 +1,4 @@
-// What the tests share that switch a robot off and on.
+// Shared by the tests that switch a robot off and on.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kStoreBytes = 8192;
 inline constexpr auto kTrialMs = static_cast<unsigned>(update::Keeper::kTrial / 1000);
 inline constexpr auto kLookMs = static_cast<unsigned>(update::Keeper::kLook / 1000);
 
-// Ends what a ProgramStore or NumberStore was asked for. Bounded.
+// Completes the request of a ProgramStore or NumberStore. Bounded.
 template <typename Store>
 void finish(Store& store) {
   for (unsigned i = 0; i < 10'000; ++i) {
@@ -29,7 +29,7 @@ void finish(Store& store) {
   FAIL("the store comes to no end");
 }
 
-// After the power has come back.
+// The store after power-up.
 template <typename Store>
 Store opened(MemoryStore& memory) {
   memory.switch_on();

@@ -1,11 +1,12 @@
-// The host's and the board's code of the link as they are, against everything that can go wrong at once: frames lost, doubled,
-// changed, late and overtaken; a host that goes away after any byte; a board that is reset in any millisecond, or loses its power at any
-// byte that it writes; faults in the trial, rollbacks, trials that are only tried. One life of a robot a run, drawn with its seed.
+// The host's and the board's own link code against everything that can go wrong at the same time: frames lost, doubled,
+// changed, late and overtaken; a host that goes away after any byte; a board that is reset in any millisecond, or loses its power
+// at any byte that it writes; faults in the trial, rollbacks, trials that go back afterwards. Each run is one life of a robot,
+// drawn with its seed.
 //
-// Looked at in every millisecond: what runs has the name of its bytes and is a program that somebody has sent or kept. At the end: after
-// a reset the robot runs, soon, what it has kept, or, when its power was cut, what it had kept or was about to; and an upload over a line
-// that is well again succeeds.
-// ROBOSYNC_LINK_RUNS: how many (`scripts/soak link`), ROBOSYNC_LINK_SEED: the first of them.
+// Checked in every millisecond: the running program's name matches its bytes, and a host has sent it or the board has kept it.
+// At the end: soon after a reset the robot runs the program that it has kept or, if its power was cut, the one that it had kept
+// or was about to keep; and an upload over a good line succeeds.
+// ROBOSYNC_LINK_RUNS: number of runs (`scripts/soak link`), ROBOSYNC_LINK_SEED: seed of the first.
 #include <cstdlib>
 #include <functional>
 #include <optional>
@@ -41,7 +42,7 @@ bool one_in(Random& random, unsigned count) {
   return random() % count == 0;
 }
 
-// What a bad line makes of a frame, one in `rate`.
+// A bad line damages one frame in `rate`.
 test::Damage damage(Random& random, unsigned rate) {
   auto late = std::make_shared<Bytes>();
   return [&random, rate, late](const Bytes& frame, std::size_t) {
@@ -71,7 +72,7 @@ test::Damage damage(Random& random, unsigned rate) {
   };
 }
 
-// The line as the host has it, until it or the board goes away.
+// The host's line, until the host or the board goes away.
 class Line final : public tool::Transport {
 public:
   explicit Line(Robot& robot) : robot_(robot) {}
@@ -131,7 +132,7 @@ public:
       if (one_in(random_, 4)) feed();
       if (one_in(random_, 4)) roll_back();
     } catch (const tool::Failure&) {
-      // The line, mostly.
+      // Mostly something with the line.
     }
     robot_.run(random_() % 600);
     after_ = kept();
@@ -154,7 +155,7 @@ private:
     if (one_in(random_, 4)) memory_.power_for = random_() % 2500;
   }
 
-  // What runs there, the program itself or another one: the host may be wrong about that.
+  // Based on the running program or on another one: the host may be wrong about which one runs.
   void upload() {
     next_ = &programs_.all[random_() % programs_.all.size()];
     const tool::Program& base = programs_.all[random_() % programs_.all.size()];
@@ -175,15 +176,15 @@ private:
     client.roll_back(client.kept().previous_hash);
   }
 
-  // As the board says by itself, when all it had to do is done.
+  // The board's report, when it has nothing left to do.
   std::optional<link::Kept> kept() {
     robot_.to_board.set({});
     robot_.to_host.set({});
     if (memory_.dead) return std::nullopt;
-    robot_.run(4500);  // also what a host has left behind: no program, or half of one
+    robot_.run(4500);  // enough also after a host that left no program, or half of one
     tool::Client client(robot_);
     link::Kept kept = client.kept();
-    // A trial may end while the reply that says so is on its way.
+    // A trial may end while the reply that reports it is on its way.
     for (unsigned asked = 1; asked < 10 && kept.state == link::Keeping::on_trial; ++asked) {
       robot_.run(kept.trial_ms + 500);
       kept = client.kept();

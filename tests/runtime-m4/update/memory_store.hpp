@@ -1,4 +1,4 @@
-// A board's store in memory, which may lose its power in the middle of a write, be busy, and have its bus taken away.
+// A board's store in memory. It may lose its power during a write, be busy, or lose its bus to a sensor.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ public:
     return Outcome::done;
   }
 
-  // What was taken away may have been written in part.
+  // A write that lost the bus may have been done in part.
   Outcome write(std::uint32_t at, std::span<const std::byte> from) override {
     const auto other = in_the_way();
     if (other == Outcome::busy) return *other;
@@ -61,12 +61,12 @@ public:
   std::size_t written = 0;  // bytes
   std::size_t reads = 0;    // transfers
   std::optional<std::size_t>
-      power_for;                 // so many more bytes; then the page of the next one is spoiled
-  unsigned writes_take = 0;      // transfers that find the store busy after a write
-  unsigned reads_take = 0;       // … after a read
+      power_for;             // bytes until the power is cut; the page of the next one is spoiled
+  unsigned writes_take = 0;  // transfers that find the store busy after a write
+  unsigned reads_take = 0;   // … after a read
   unsigned one_in_is_taken = 0;  // 0: none
   bool dead = false;             // it never answers
-  unsigned stalls = 0;           // parts, and one, in which a page is erased; 0: it is no flash
+  unsigned stalls = 0;           // a page is erased in this many parts, plus one; 0: not flash
   std::function<void()> stall;
 
 private:

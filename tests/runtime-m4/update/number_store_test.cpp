@@ -1,4 +1,4 @@
-// KEPT numbers through cuts of the power, at every byte that is written, and from one program to the next.
+// KEPT numbers over power cuts at every written byte, and from one program to the next.
 #include "runtime-m4/update/number_store.hpp"
 
 #include <map>
@@ -41,7 +41,7 @@ void write(NumberStore& store, const Numbers& numbers) {
   finish(store);
 }
 
-// A store with some numbers in it, so that its ring has turned.
+// A store with so many numbers that its ring has wrapped.
 MemoryStore used() {
   MemoryStore memory(kStoreBytes);
   auto store = test::opened<NumberStore>(memory);
@@ -50,7 +50,7 @@ MemoryStore used() {
   return memory;
 }
 
-// Counts touches; `more` stands in front of its rules.
+// Counts touches; `more` comes before its rules.
 tool::Program counting(const std::string& more = "REMEMBER visits = 0 KEPT\n") {
   return test::compile(more +
                        "BEHAVIOR count PRIORITY 50\n"
@@ -66,7 +66,7 @@ void touch(Robot& robot, unsigned times) {
   }
 }
 
-// Of the running program, in whole numbers.
+// The running program's KEPT numbers, as integers.
 std::vector<int> kept(const Robot& robot) {
   std::array<KeptNumber, vm::kMaxKept> numbers{};
   std::vector<int> values;
@@ -227,7 +227,7 @@ TEST_CASE("power that goes at any time costs a second of counting at most") {
     REQUIRE(begun >= known);
     for (unsigned i = 0; i < 2; ++i) {
       touch(robot, static_cast<unsigned>(random() % 5));
-      robot.run(kLookMs + 200);  // this much is sure
+      robot.run(kLookMs + 200);  // by then the write is guaranteed
     }
     known = kept(robot).front();
     REQUIRE(known >= begun);

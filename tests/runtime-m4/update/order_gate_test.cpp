@@ -1,5 +1,5 @@
-// Who may give the robot orders: the board's gate by itself and in the whole robot, with signatures of libsodium, against who has
-// heard everything that was ever sent and can send whatever he likes.
+// Who may give the robot orders: the board's gate alone and in the whole robot, with signatures from libsodium, against an
+// attacker who has recorded everything that was ever sent and can send anything.
 #include "runtime-m4/update/order_gate.hpp"
 
 #include <cstdlib>
@@ -46,7 +46,7 @@ link::Pair owner_of(const Keys& keys, std::uint8_t seed = 1) {
   return owner;
 }
 
-// The gate of a board that was just switched on, without the robot around it.
+// The gate of a board that was just switched on, without a robot.
 struct Alone {
   explicit Alone(MemoryStore& memory, bool switched_on = true) : gate(robot.kernel, &memory) {
     memory.switch_on();
@@ -66,7 +66,7 @@ struct Alone {
     gate.fill(answer);
     return answer;
   }
-  // What the gate makes of a message; its order, when it takes it.
+  // The type of the order that the gate takes from a message; nothing if it refuses it.
   std::optional<MessageType> takes(MessageType type, std::span<const std::byte> payload) {
     link::Frame frame{type, 0, payload};
     if (!gate.takes(frame)) return std::nullopt;
@@ -81,7 +81,7 @@ struct Alone {
   OrderGate gate;
 };
 
-// A signed order to that board, as the tool would send it.
+// A signed order to that board, like the tool's.
 Bytes order(const Alone& board, const OwnerKey& key, MessageType type,
             std::span<const std::byte> payload, std::uint64_t ahead = 0) {
   link::SignedOrder order{};
@@ -209,7 +209,7 @@ TEST_CASE("an order to one board is none to another one of the same owner") {
         Denial::stale);
 }
 
-// Every byte that an order has, and every length.
+// With changes of every byte of an order, and every length.
 TEST_CASE("an order that was changed or cut anywhere does not count") {
   Keys keys;
   MemoryStore memory(kStoreBytes);
@@ -241,10 +241,10 @@ TEST_CASE("the signature of one order is none of another order, nor of anything 
     CHECK(at.denies(swapped) == Denial::bad_signature);
     at.board.robot.run(OrderGate::kMostPause / 1000);
   }
-  // What is no order is not made one by a signature: neither stop, nor an order in an order.
+  // A signature does not turn other messages into orders: neither stop, nor an order in an order.
   for (const MessageType type : {MessageType::stop, MessageType::pair, MessageType::signed_order})
     CHECK(at.denies(order(at.board, *at.keys.owner, type, {})) == Denial::bad_signature);
-  // Of an older text, and of the payload alone.
+  // Signatures of an older text, and of the payload alone.
   link::SignedOrder old{};
   old.boot = at.board.said().boot;
   old.number = at.board.said().next;
@@ -334,7 +334,7 @@ TEST_CASE("an upload is let through once, of the image that was signed, as it wa
   granted(false);
   REQUIRE(at.takes(clear_order(at.board, *at.keys.owner)));
   CHECK_FALSE(at.board.gate.grants(image, how(false)));
-  // The same `begin` again goes on with it, and no other.
+  // Only the same `begin` continues the upload.
   granted(false);
   CHECK(at.board.takes(MessageType::begin, link::wire_bytes(begin)) == MessageType::begin);
   CHECK(at.board.denies(MessageType::begin, link::wire_bytes(link::Begin{1, 101, {1}, {}})) ==
@@ -368,7 +368,7 @@ TEST_CASE(
     CHECK(paired == (cut >= record));
     if (!paired) continue;
     REQUIRE(seen.insert(second.said().boot).second);
-    memory.power_for = cut - record;  // of the next start
+    memory.power_for = cut - record;  // at the next start
     {
       OrderGate gate(second.robot.kernel, &memory);
       gate.open(true);
@@ -389,7 +389,7 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
   tool::Client client(robot), stranger(robot);
   client.use_key(keys.file);
   stranger.use_key(keys.other_file);
-  run_on(robot, program);  // nobody owns it yet
+  run_on(robot, program);  // it has no owner yet
   client.pair(owner_of(keys));
   CHECK(client.hello().pairing == Pairing::paired);
   stranger.hello();
@@ -409,7 +409,7 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
   CHECK(tool::upload(client, client.hello(), program.bytes(), {}).activation.running == 1);
   robot.to_board.set({});
 
-  // All of it once more, in the same order and in another.
+  // Replays everything, in the same order and in another.
   const auto again = [&] {
     const auto activations = client.status().activations;
     for (const Bytes& frame : heard) {
@@ -424,9 +424,9 @@ TEST_CASE("orders of an owner reach the robot, and those of others do not") {
   std::ranges::reverse(heard);
   again();
 
-  // The stranger's rsc says why not; his stop works all the same.
+  // The stranger's rsc reports why it is refused; his stop works nevertheless.
   const auto foreign = [&](auto&& what) {
-    CHECK_THROWS_WITH(what(), Contains("name the file of the other one"));
+    CHECK_THROWS_WITH(what(), Contains("name the right file"));
   };
   foreign([&] { (void)stranger.feed({.channel = 0, .at_us = 0, .value = 2000}); });
   foreign([&] { stranger.clear(test::name_of(program)); });
@@ -452,7 +452,7 @@ TEST_CASE("what a stranger sends into the owner's upload is not run") {
   client.use_key(keys.file);
   client.pair(owner_of(keys));
   const tool::Program program = test::program(3);
-  // A whole transfer of his own, before and without the owner's order.
+  // The stranger's own transfer, before and without the owner's order.
   const auto foreign = [&] {
     for (std::uint32_t at = 0; at < program.bytes().size(); at += 100) {
       const link::Data head{static_cast<std::uint16_t>(client.session()),
@@ -476,7 +476,7 @@ TEST_CASE("what a stranger sends into the owner's upload is not run") {
   client.send(MessageType::begin, link::wire_bytes(begin));
   foreign();
   CHECK(client.activate(how).refusal == link::kNothingToActivate);
-  // … and in the place of the owner's.
+  // … and instead of the owner's.
   client.order_upload(link::wire_bytes(begin), program.bytes(), how);
   foreign();
   CHECK(client.activate(how).refusal == link::kNothingToActivate);
@@ -512,14 +512,14 @@ TEST_CASE("a key that cannot be used is said to be so") {
   tool::Client client(robot);
   client.pair(owner_of(keys));
   client.use_key(keys.folder.path("none"));
-  CHECK_THROWS_WITH(client.resume(), Contains("there is no key: make one, rsc keygen"));
+  CHECK_THROWS_WITH(client.resume(), Contains("there is no key: make one with rsc keygen"));
   std::ofstream(keys.folder.path("text")) << "not a key\n";
   std::filesystem::permissions(keys.folder.path("text"), std::filesystem::perms::owner_read);
   client.use_key(keys.folder.path("text"));
-  CHECK_THROWS_WITH(client.resume(), Contains("no key that rsc keygen has made"));
+  CHECK_THROWS_WITH(client.resume(), Contains("not a key from rsc keygen"));
   std::filesystem::permissions(keys.file, std::filesystem::perms::group_read,
                                std::filesystem::perm_options::add);
   client.use_key(keys.file);
   CHECK_THROWS_WITH(client.resume(), Contains("chmod 600"));
-  CHECK_THROWS_WITH(OwnerKey::make(keys.file), Contains("there is a file already"));
+  CHECK_THROWS_WITH(OwnerKey::make(keys.file), Contains("the file already exists"));
 }

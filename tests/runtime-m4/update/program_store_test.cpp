@@ -1,4 +1,4 @@
-// What outlasts a cut of the power, at every byte that is written: by itself, and with the whole robot around it.
+// What survives a power cut at every written byte: the store alone, and in the whole robot.
 #include "runtime-m4/update/program_store.hpp"
 
 #include <catch2/catch.hpp>
@@ -64,7 +64,7 @@ void keep(MemoryStore& memory, const tool::Program& program) {
   robot.run(kTrialMs + 2000);
 }
 
-// With what the robot runs soon after a reset; zeros: nothing.
+// The program that the robot runs soon after a reset; zeros: none.
 link::ProgramHash started(MemoryStore& memory) {
   memory.switch_on();
   Robot robot(boards::kMemory, &memory);
@@ -120,7 +120,7 @@ TEST_CASE("a cut of the power at every byte leaves the program of before, or the
     const bool whole = cut == after.written;
     REQUIRE(again.kept() == named(whole ? third : second));
     REQUIRE(read_kept(again) == (whole ? third : second));
-    keep(again, first);  // and it goes on
+    keep(again, first);  // and it works again
     ProgramStore last = test::opened<ProgramStore>(memory);
     REQUIRE(read_kept(last) == first);
   }
@@ -165,7 +165,7 @@ TEST_CASE("whatever stands in a store, no more is read than there is room") {
   MemoryStore memory(kStoreBytes);
   std::mt19937 random(1);
   for (unsigned i = 0; i < 2000; ++i) {
-    if (i % 2 == 0) {  // a whole record with any numbers in it
+    if (i % 2 == 0) {  // a valid record with random numbers in it
       std::array<std::uint32_t, 12> record{0x3250'5352,
                                            static_cast<std::uint32_t>(random()) % 3 + 1};
       for (std::size_t word = 2; word < record.size() - 1; ++word)
@@ -255,7 +255,7 @@ TEST_CASE(
     CHECK_THAT(tool::rollback_text(kept),
                Catch::StartsWith("to none: ") && Catch::Contains(tool::text_of(name_of(bad))));
     CHECK(tool::keeping_json(kept).at("rollback").is_null());
-    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("gone back automatically") &&
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("went back on its own") &&
                                                    Catch::Contains("upload the one you want"));
     client.roll_back(name_of(first));
     client.roll_back(name_of(bad));
@@ -291,13 +291,13 @@ TEST_CASE("a cut of the power before its trial is over leaves no program that di
 
 namespace {
 
-// Its SAFETY rule trips at once, for nobody feeds the sensor.
+// Its SAFETY rule trips immediately, because the sensor is not fed.
 tool::Program tripping(int limit) {
   return test::compile("SAFETY guard\n  WHEN touch LEVEL > " + std::to_string(limit) +
                        "\n  DO STOP ALL\nEND\n" + test::program_text(3));
 }
 
-// What runs when the trial of `program` is over.
+// The program that runs after the trial of `program`.
 link::ProgramHash after_trial(MemoryStore& memory, const tool::Program& program) {
   Robot robot(boards::kMemory, &memory);
   robot.run(1000);
@@ -316,7 +316,7 @@ TEST_CASE(
   keep(memory, calm);
   CHECK(after_trial(memory, trips) == name_of(calm));
   CHECK(started(memory) == name_of(calm));
-  keep(other, trips);  // there was none before it
+  keep(other, trips);  // there was no program before it
   CHECK(after_trial(other, also) == name_of(also));
   CHECK(started(other) == name_of(also));
 }
@@ -368,7 +368,7 @@ TEST_CASE(
   tool::Client client(robot);
   CHECK(tool::has_failed_trial(client.kept(), name_of(bad)));
   CHECK(tool::keeping_text(client.kept(), name_of(bad)) ==
-        "not kept: it has not stood its trial; the program kept before runs again");
+        "not kept: it failed its trial; the program kept before runs again");
   run_on(robot, bad);
   CHECK(client.kept().given_up_hash == link::ProgramHash{});
   CHECK_FALSE(tool::has_failed_trial(client.kept(), name_of(bad)));
@@ -378,7 +378,7 @@ TEST_CASE(
         "kept: the robot starts with it after a reset");
 }
 
-// An older board remembers it until its next start.
+// Older firmware remembers the failure until its next start.
 TEST_CASE("a program that runs has not failed, whatever the board remembers of it") {
   const link::ProgramHash it{1}, other{2};
   const auto fails = [&](Keeping state, const link::ProgramHash& kept) {
@@ -407,8 +407,8 @@ TEST_CASE("of a program that is only tried nobody says that it is kept") {
   options.confirm = false;
   REQUIRE(tool::upload(client, client.hello(), next.bytes(), options).activation.running == 1);
   const std::string meanwhile = tool::keeping_text(client.kept(), name_of(next));
-  CHECK(meanwhile.starts_with("only tried: in "));
-  CHECK(meanwhile.ends_with(" s the kept program comes back"));
+  CHECK(meanwhile.starts_with("only on trial: the kept program comes back in "));
+  CHECK(meanwhile.ends_with(" s"));
   CHECK(tool::keeping_text(client.kept()) == meanwhile);
   robot.run(2500);
   CHECK(tool::keeping_text(client.kept(), name_of(next)) ==
@@ -449,7 +449,7 @@ TEST_CASE("a person goes back to the program before, and forth again") {
     robot.run(kTrialMs + 2000);
     REQUIRE(client.kept().state == Keeping::kept);
     CHECK(tool::roll_back(client).program_hash == name_of(first));
-    client.roll_back(name_of(first));  // asked for twice
+    client.roll_back(name_of(first));  // requested twice
     robot.run(kMostMs);
     CHECK(client.hello().program_hash == name_of(first));
     CHECK(tool::roll_back(client).program_hash == name_of(second));
@@ -481,7 +481,7 @@ TEST_CASE("a kept program that is damaged gives way to the one before, or to non
     tool::Client client(robot);
     CHECK(client.hello().program_hash == name_of(first));
     CHECK(client.kept().kept_hash == name_of(first));
-    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("not whole"));
+    CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("damaged"));
     CHECK(client.hello().program_hash == name_of(first));
   }
   CHECK(started(memory) == name_of(first));
@@ -571,7 +571,7 @@ TEST_CASE("after a reset by a failure the kept program stands still until somebo
     run_on(robot, test::program(5));
     CHECK(client.hello().stopped == 0);
   }
-  Robot robot;  // with a program from the host, it is the host's affair
+  Robot robot;  // with a program from the host, which is then responsible
   run_on(robot, test::program(3));
   tool::Client client(robot);
   CHECK(client.hello().stopped == 0);
@@ -655,7 +655,7 @@ TEST_CASE("what lets the processor stand still is done where no thread is due be
       test::compile("BEHAVIOR tick PRIORITY 50\nEVERY 7ms DO LOG \"tick\" END\nEND\n");
   run_on(robot, program);
   robot.run(kTrialMs + 4000);
-  CHECK(parts >= 9 * 4);  // some pages of the image, and that of the record
+  CHECK(parts >= 9 * 4);  // several pages of the image, and the record's
   tool::Client client(robot);
   CHECK(client.kept().state == Keeping::kept);
   robot.run(2 * kLookMs);

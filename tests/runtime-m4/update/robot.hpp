@@ -1,6 +1,6 @@
 // A whole robot for tests of the link: the real kernel, runtime and server on the host port, and a
-// serial line in memory at 115,200 baud that can be told to damage what passes. Time is virtual: it
-// moves only while the host waits for the line.
+// serial line in memory at 115,200 baud that can damage frames. Time is virtual: it
+// advances only while the host waits for the line.
 #pragma once
 
 #include <algorithm>
@@ -27,11 +27,11 @@ namespace robosync::test {
 
 using Bytes = std::vector<std::byte>;
 
-// Given each frame that goes one way (with its delimiter) and its number from 0; what it returns
-// goes over the line instead.
+// Called with each frame in one direction (with its delimiter) and its number from 0. The returned bytes
+// go over the line instead.
 using Damage = std::function<Bytes(const Bytes& frame, std::size_t number)>;
 
-// A board with nothing but a line: rings of the UART driver's size on both sides.
+// A board with only a line: rings of the UART driver's size on both sides.
 class LineBoard final : public boards::Board {
 public:
   static constexpr std::size_t kRing = 512;
@@ -47,7 +47,7 @@ public:
     return false;
   }
   bool i2c_select(std::uint8_t, std::uint8_t, std::span<const std::byte>) override { return false; }
-  // On its bus nobody answers, since a line is held down.
+  // No device on its bus answers, because a line is held low.
   boards::BusState buses() const override { return {.clears = 2, .held = 1}; }
   bool input(std::uint16_t) const override { return true; }
   void pwm_write(std::uint16_t, std::uint32_t) override {}
@@ -73,7 +73,7 @@ public:
   }
 
   void link_start(const boards::LineEvents& events) override { events_ = events; }
-  // What the UART's interrupts would see after a millisecond.
+  // Does what the UART's interrupts would do after a millisecond.
   void interrupt() {
     const bool room = std::exchange(wants_room_, wants_room_ && to_host.size() > kRing / 2);
     for (; watched_ < from_host.size(); ++watched_)
@@ -92,7 +92,7 @@ private:
   boards::LineEvents events_;
 };
 
-// One way of the line: cuts the stream into frames and passes each through the damage.
+// One direction of the line: splits the stream into frames and passes each through the damage.
 class Way {
 public:
   void set(Damage damage) {
@@ -188,7 +188,7 @@ public:
   Way to_board, to_host;
   bool host_reads = true;
   std::size_t overruns = 0;         // bytes lost because the board's receive ring was full
-  std::function<void()> each_tick;  // looks at the robot after each millisecond
+  std::function<void()> each_tick;  // called after each millisecond
 
 private:
   std::deque<std::byte> received_;

@@ -1,5 +1,5 @@
 // The board's server and the host's client over a line in memory: every message, and what happens
-// when the host does not read, asks twice, or sends what it should not.
+// when the host does not read, asks twice, or sends invalid data.
 #include "runtime-m4/update/server.hpp"
 
 #include <random>
@@ -29,7 +29,7 @@ link::ActivateResult upload(tool::Client& client, std::span<const std::byte> ima
   return tool::upload(client, client.hello(), image, {}).activation;
 }
 
-// What the board does in `time`, as kinds of events.
+// The board's events during `time`.
 std::vector<link::Event> events(tool::Client& client, milliseconds time) {
   std::vector<link::Event> list;
   const auto until = client.now() + time;
@@ -284,7 +284,7 @@ TEST_CASE("replies are kept while the host does not read; events are dropped and
     CHECK(reply->type == MessageType::status);
     CHECK(reply->sequence == sequence);
   }
-  // What was kept is the beginning, whole and in order.
+  // The beginning was stored, complete and in order.
   const std::vector<link::Event> list = events(client, milliseconds(500));
   CHECK(list.size() > 10);
   CHECK(std::ranges::is_sorted(list, {}, &link::Event::step));
@@ -304,11 +304,11 @@ TEST_CASE("the link thread runs when there is something to do, and then only") {
   CHECK(runs_in(10'000) == 0);
   REQUIRE(upload(client, test::program(3).bytes()).running == 1);
   CHECK(runs_in(10'000) == 0);
-  robot.runtime.feed({.channel = 0, .at_us = 0, .value = 2000});  // nobody listens to what happens
+  robot.runtime.feed({.channel = 0, .at_us = 0, .value = 2000});  // while no host listens
   CHECK(runs_in(1000) == 0);
 
   client.set_trace(true);
-  robot.run(10'000);  // until what the reading began is done
+  robot.run(10'000);  // until the reading's effects have ended
   CHECK(runs_in(10'000) == 0);
   robot.runtime.feed({.channel = 0, .at_us = 0, .value = 5000});
   const std::uint32_t runs = runs_in(1000);

@@ -1,5 +1,5 @@
-// Whose line it is: two hosts on one line, each with its own client, whose frames mix as a server of serial lines would mix
-// them; and hosts that go away, come back, or find the board started anew.
+// Which host owns the line: two hosts on one line, each with its own client, whose frames are mixed as a serial port server would
+// mix them; and hosts that go away, come back, or find the board restarted.
 #include "runtime-m4/update/session.hpp"
 
 #include <cstring>
@@ -23,7 +23,7 @@ constexpr unsigned kSilenceMs = 3000;
 
 constexpr link::SessionId kDesk = 0x00770077;
 
-// Another host, `desk`, is in the midst of a transfer: it has said hello and begun.
+// Another host, `desk`, is in the middle of a transfer: it has sent hello and begin.
 void desk_begins(Robot& robot, const tool::Program& program) {
   tool::Client client(robot);
   client.send(MessageType::hello, link::wire_bytes(link::Hello{kDesk, 0, {}, {"desk"}}));
@@ -53,15 +53,16 @@ TEST_CASE("while one host uploads, another one is told who has the line, and cha
     FAIL("the line was the other host's");
   } catch (const tool::Failure& failure) {
     CHECK(failure.exit() == tool::Exit::outside);
-    CHECK_THAT(failure.what(), Catch::Contains("busy: desk uploads a program, and has the line") &&
-                                   Catch::Contains("since 1 s") && Catch::Contains("--take"));
+    CHECK_THAT(failure.what(),
+               Catch::Contains("busy: desk is uploading a program, and has had the line") &&
+                   Catch::Contains("for 1 s") && Catch::Contains("--take"));
   }
   CHECK_THROWS_AS(second.resume(), tool::Failure);
   CHECK_THROWS_AS(second.feed({.channel = 0, .at_us = 0, .value = 1}), tool::Failure);
   CHECK(second.status().activations == 0);
-  CHECK(second.hello().running == 0);  // hello is answered to everybody
+  CHECK(second.hello().running == 0);  // everybody gets an answer to hello
   CHECK(second.stop().activations == 0);
-  CHECK(robot.runtime.stopped());  // and stop obeyed
+  CHECK(robot.runtime.stopped());  // and stop works for everybody
 }
 
 TEST_CASE("a host that has gone away keeps the line for three seconds, and not from who takes it") {
@@ -128,7 +129,7 @@ TEST_CASE("what another rsc of this computer has left behind does not keep the l
 TEST_CASE("a board that has started again knows no session, and is greeted again") {
   const tool::Program mine = test::long_program();
   Robot robot;
-  tool::Client client(robot);  // has said hello to the board as it was before
+  tool::Client client(robot);  // has sent hello before the board restarted
   CHECK(tool::upload(client, {}, mine.bytes(), {}).activation.running == 1);
   Robot again;
   tool::Client other(again);

@@ -1,4 +1,4 @@
-// The ring of messages to the host: whole, in order, bounded, counted.
+// The ring of messages to the host: complete, in order, bounded, counted.
 #include "runtime-m4/update/trace_ring.hpp"
 
 #include <string>
@@ -60,10 +60,10 @@ TEST_CASE("who reads is called for the first message, and again when all are tak
     kernel.machine().run_until(kernel.now());
     return reader.calls;
   };
-  CHECK(calls_after(3) == 0);  // nobody listens
+  CHECK(calls_after(3) == 0);  // no host listens
   ring.listen(true);
   CHECK(calls_after(3) == 1);
-  CHECK(calls_after(100) == 1);  // it has not taken them yet; the last ones are lost
+  CHECK(calls_after(100) == 1);  // the reader has not taken them yet; the last ones are lost
   while (!take(ring).empty()) {
   }
   CHECK(calls_after(0) == 1);

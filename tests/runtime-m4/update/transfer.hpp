@@ -1,4 +1,4 @@
-// An image on its way to the board as it stands, which the tool would not send so.
+// Sends an image to the board as it is, even if the tool would not send it.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace robosync::test {
 
-// `hash`: the name that is announced.
+// `hash`: the announced name.
 inline void transfer(Robot& robot, tool::Client& client, std::span<const std::byte> image,
                      const link::ProgramHash& hash) {
   const link::Begin begin{client.session(), static_cast<std::uint32_t>(image.size()), hash, {}};

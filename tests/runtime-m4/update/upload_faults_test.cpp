@@ -1,6 +1,6 @@
-// Uploads over a line that damages one frame, loses many, or breaks off; and images that are
-// damaged themselves. In every millisecond the robot runs the old program or the new one, never
-// neither, and in the end an upload succeeds.
+// Uploads over a line that damages one frame, loses many, or breaks off; and damaged images.
+// In every millisecond the robot runs either the old program or the new one, and in the end an
+// upload succeeds.
 #include <cstring>
 #include <random>
 
@@ -20,7 +20,7 @@ using test::Robot;
 
 namespace {
 
-// A robot that runs `old_program`, and a watch over it that never sees anything but the two.
+// A robot that runs `old_program`; checks continuously that it runs only the old program or the new one.
 class Scene {
 public:
   Scene(const tool::Program& old_program, const tool::Program& new_program)
@@ -49,7 +49,7 @@ private:
   const tool::Program& new_;
 };
 
-// Does `change` to frame `number` only.
+// Applies `change` to frame `number` only.
 test::Damage at_frame(std::size_t number, const std::function<Bytes(Bytes)>& change) {
   return [=](const Bytes& frame, std::size_t at) { return at == number ? change(frame) : frame; };
 }
@@ -182,7 +182,7 @@ TEST_CASE("another host begins a transfer before the activation: the upload star
       link::encode_frame(link::MessageType::begin, 99, link::wire_bytes(other), wire);
   bool done = false;
   scene.robot.to_board.set([&](const Bytes& frame, std::size_t) {
-    // COBS leaves the type where it is: the second byte.
+    // COBS does not move the type: it is the second byte.
     if (done || std::to_integer<int>(frame[1]) != static_cast<int>(link::MessageType::activate)) {
       return frame;
     }
@@ -266,7 +266,7 @@ TEST_CASE("a refusal names reason, section and place") {
   const tool::Program new_program = test::program(4);
   Scene scene(old_program, new_program);
   Bytes image(new_program.bytes().begin(), new_program.bytes().end());
-  // The second instruction gets an opcode that there is not; the checksum is made to fit.
+  // The second instruction gets an invalid opcode; the checksum is corrected.
   const auto code = std::as_bytes(new_program.image().code);
   const auto at = static_cast<std::size_t>(code.data() - new_program.bytes().data()) + 4;
   image[at] = std::byte{0xEE};

@@ -1,4 +1,4 @@
-// System calls of threads without privileges: what they do, and that nothing else comes of them,
+// System calls of unprivileged threads: what they do, and that they have no other effect,
 // whatever their numbers and arguments are.
 #include "runtime-m4/kernel/calls.hpp"
 
@@ -18,7 +18,7 @@ constexpr std::uint32_t kNoSuchCall = 1U << 21;  // port/cortex-m4/fault.hpp
 
 enum Word : std::uint8_t { kTaken, kRounds, kSeed, kRanAgain };
 
-// The open area, by an address that is no variable.
+// The granted area, accessed without a variable that holds its address.
 volatile std::uint32_t& open(Word word) {
   std::uint32_t area = 0;
   asm("movw %0, #:lower16:granted_area_of_tests\n\tmovt %0, #:upper16:granted_area_of_tests"
@@ -26,7 +26,7 @@ volatile std::uint32_t& open(Word word) {
   return reinterpret_cast<volatile std::uint32_t*>(area)[word];
 }
 
-// Answers each event with a report.
+// Reports each event.
 void answer(void*) {
   while (true) {
     open(kTaken) = calls::wait(robosync_kernel, kPing | kOther);
@@ -47,7 +47,7 @@ void wait_and_report() {
   CHECK(rig::faults() == 0);
 }
 
-// The same with one call: it knows what it is woken for.
+// The same with one call: it knows the event that wakes it.
 void answer_and_rest(void*) {
   (void)calls::wait(robosync_kernel, kPing);
   while (true) {
@@ -64,7 +64,7 @@ void rest_until_woken() {
     CHECK(robosync_kernel.wait(kPong, robosync_kernel.now() + 10'000) == kPong);
     CHECK(rig::granted_area()[kRounds] == round);
   }
-  // What it does not rest for does not wake it.
+  // Other events do not wake it.
   robosync_kernel.signal(caller, kOther);
   rig::sleep_ms(2);
   CHECK(rig::granted_area()[kRounds] == 100);
@@ -72,7 +72,7 @@ void rest_until_woken() {
   CHECK(rig::faults() == 0);
 }
 
-// Takes one of two events that are there, then the other one.
+// Takes one of two pending events, then the other one.
 void take_one_by_one(void*) {
   open(kTaken) = calls::wait(robosync_kernel, kPing);
   open(kRounds) = calls::wait(robosync_kernel, kOther);
@@ -89,7 +89,7 @@ void others_stay() {
   CHECK(rig::granted_area()[kRounds] == kOther);
 }
 
-// Events that come before the wait, and such that nobody waits for.
+// Events that come before the wait, and events that nobody waits for.
 void events_are_kept() {
   robosync_kernel.watch(rig::conductor(), 0, kPong);
   rig::Thread& caller = rig::start_unprivileged(kCaller, 40, answer);
@@ -105,7 +105,7 @@ std::uint32_t draw(std::uint32_t& state) {
   return state = xorshift32(state);
 }
 
-// Calls with whatever comes: every register is drawn, and half of the numbers are calls that exist.
+// Calls with random registers; half of the call numbers exist.
 void call_anything(void*) {
   std::uint32_t state = open(kSeed);
   while (true) {
@@ -122,8 +122,8 @@ void call_anything(void*) {
   }
 }
 
-// A thread that is stopped for its call is started again with the next seed. One that waits is
-// signalled what it may wait for.
+// A thread that is stopped because of its call is restarted with the next seed. One that waits gets
+// the events that it may wait for.
 void hostile_calls() {
   constexpr unsigned kThreads = 2000;
   std::uint32_t seed = 12345;
@@ -163,8 +163,8 @@ void run_again() {
   }
 }
 
-// Where the registers of a thread that was stopped are taken to stand it leaves such that its call is
-// rest(1), and that it goes on in run_again() when it is signalled.
+// At the place where a stopped thread's registers are expected, it leaves values that make its call
+// rest(1), and make it continue in run_again() when it is signalled.
 [[gnu::naked]] void calls_with_lost_stack(void*) {
   asm volatile(
       "sub  r0, sp, #32     \n"
@@ -183,7 +183,7 @@ void run_again() {
       ".ltorg               \n" ::"i"(run_again));
 }
 
-// The call cannot be stacked: one fault, and the call is none any more.
+// The call's frame cannot be stacked: that is one fault, and the call is not executed.
 void call_without_stack() {
   rig::granted_area()[kRanAgain] = 0;
   rig::Thread& caller = rig::start_unprivileged(kCaller, 60, calls_with_lost_stack);

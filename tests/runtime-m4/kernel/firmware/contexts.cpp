@@ -1,7 +1,7 @@
-// Services of the kernel called from where they must not be called: from an interrupt, from one
-// above the kernel's level, under a lock. The assertion says so, and nothing has happened.
+// Kernel services called from contexts where they are not allowed: from an interrupt, from one
+// above the kernel's level, under a lock. The assertion reports it, and the call has no effect.
 //
-// The assertion jumps back to the test, as nothing can be relied on where it fails.
+// The assertion jumps back to the test, since the failing context is not reliable.
 #include <csetjmp>
 #include <cstring>
 
@@ -15,7 +15,7 @@ namespace core = robosync::port::core;
 using robosync::kernel::Mutex;
 using robosync::kernel::ThreadSpec;
 
-constexpr unsigned kInterrupt = 20;  // of no device: it is pended by software
+constexpr unsigned kInterrupt = 20;  // no device uses it: software pends it
 
 std::jmp_buf back;
 const char* failed_service = nullptr;

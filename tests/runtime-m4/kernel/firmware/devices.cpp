@@ -31,7 +31,7 @@ void i2c_absent() {
   CHECK(read_limit() != 0xFFFF'FFFF);  // the bus still works
 }
 
-// Nothing is there: what is read is 0, as if both lines were held down for ever.
+// Nothing is there: reads return 0, as if both lines were held low for ever.
 void i2c_held() {
   constexpr std::uintptr_t kNobody = 0x4003'0000;
   robosync::boards::mps2::I2c bus(kNobody);
@@ -49,8 +49,8 @@ void i2c_held() {
   CHECK(read_limit() != 0xFFFF'FFFF);
 }
 
-// A device that was interrupted in the middle of a zero, as by a reset of the board, waits for clocks and holds the data
-// line down until it has them.
+// A device that was interrupted in the middle of a zero, for example by a reset of the board, holds the data line low until it
+// gets clocks.
 void i2c_cleared() {
   using namespace robosync::boards::mps2;
   const std::uint16_t before = robosync_board.buses().clears;
@@ -69,7 +69,7 @@ void i2c_cleared() {
   send(kThermometer << 1 | 1, 8);
   send(1, 1);  // its acknowledgement
   lines.set = kI2cData;
-  lines.set = kI2cClock;  // its first bit, a zero; and nobody goes on
+  lines.set = kI2cClock;  // its first bit, a zero; then the clock stops
   CHECK((lines.set & kI2cData) == 0);
   CHECK(read_limit() != 0xFFFF'FFFF);
   CHECK(robosync_board.buses().clears == before + 1);

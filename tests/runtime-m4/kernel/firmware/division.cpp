@@ -1,4 +1,4 @@
-// 64-bit division on the board (port/cortex-m4/divide.S): what it gives is what division means.
+// 64-bit division on the board (port/cortex-m4/divide.S): checks the results against the definition.
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {

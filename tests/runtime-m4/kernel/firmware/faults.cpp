@@ -1,4 +1,4 @@
-// Each way a thread can go wrong: it is stopped and described, the others do not notice.
+// Each kind of fault in a thread: the thread is stopped and described, the others do not notice.
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
@@ -13,7 +13,7 @@ constexpr std::uintptr_t kNowhere = 0x6000'0000;  // no memory there
 
 volatile unsigned beats = 0;
 
-// Wakes every millisecond and uses the FPU; a fault of another thread must not cost it one beat.
+// Wakes every millisecond and uses the FPU; a fault of another thread must not cost it a beat.
 void heart(void*) {
   volatile float pulse = 0;
   for (;;) {
@@ -32,7 +32,7 @@ bool name_is(const char* expected) {
   return true;
 }
 
-// Starts `entry` beside the heart and expects it to be stopped with `cause`.
+// Starts `entry` in addition to the heart, and expects it to be stopped with `cause`.
 void expect_fault(void (*entry)(void*), std::uint32_t cause) {
   beats = 0;
   rig::start(0, 60, heart);
@@ -78,7 +78,7 @@ void call_of_null() {
   expect_fault(entry, kInvalidState);
 }
 
-// With FPU registers in use, so that their saving is still put off when the fault strikes.
+// With FPU registers in use, so that their lazy saving is still pending at the fault.
 void fault_with_fpu() {
   const auto entry = [](void*) {
     asm volatile(
@@ -103,7 +103,7 @@ void lost_stack_pointer() {
   CHECK(rig::last_fault().pc == 0);
 }
 
-// The same with FPU registers in use, whose saving the core then puts off: nobody may save them
+// The same with FPU registers in use, whose saving is then pending: they must not be saved
 // later.
 void lost_stack_pointer_with_fpu() {
   const auto entry = [](void*) {
@@ -133,7 +133,7 @@ void foreign_stack_pointer() {
     CHECK(foreign[i] == std::byte{0});
 }
 
-// Goes down until `floor` is passed, and comes back.
+// Recurses until the stack pointer has passed `floor`, and returns.
 [[gnu::noinline]] unsigned dive(std::uintptr_t floor) {
   volatile unsigned here = 1;
   if (reinterpret_cast<std::uintptr_t>(&here) <= floor) return 0;
@@ -167,7 +167,7 @@ void no_room_for_a_frame() {
   CHECK(rig::last_fault().pc == 0);
 }
 
-// An interrupt finds room, the context switch does not: it faults itself while it saves.
+// An interrupt finds room, but the context switch does not: it faults while it saves.
 void no_room_for_registers() {
   const auto entry = [](void* self) {
     asm volatile(

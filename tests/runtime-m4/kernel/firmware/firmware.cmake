@@ -7,6 +7,6 @@ robosync_elf(robosync_kernel_test_asserted kernel-test
   ${folder}/devices.cpp ${folder}/division.cpp ${folder}/idle.cpp ${folder}/contexts.cpp)
 target_link_options(robosync_kernel_test_asserted PRIVATE -Wl,--defsym=without_arena=1)
 target_compile_options(robosync_kernel_test_asserted PRIVATE -mfloat-abi=softfp)  # its threads use the FPU
-# Random use for hours of virtual time: build/…/kernel-stress.elf, run by tests/runtime-m4/kernel/run_stress.sh.
+# Random use over hours of virtual time: build/…/kernel-stress.elf, run by tests/runtime-m4/kernel/run_stress.sh.
 robosync_elf(robosync_kernel_stress_asserted kernel-stress ${folder}/stress.cpp)
 target_link_options(robosync_kernel_stress_asserted PRIVATE -Wl,--defsym=without_arena=1 -Wl,--wrap=PendSV_Handler)

@@ -1,5 +1,5 @@
-// Sleeping without ticks: the time is right for whoever asks when the core was woken, and does not
-// drift against the clock. Only when no thread below spins.
+// Sleeping without ticks: the time is right when the core wakes, and does not drift against the
+// clock. These scenarios need that no thread of lower rank spins.
 #include <array>
 
 #include "runtime-m4/port/cortex-m4/core.hpp"
@@ -26,7 +26,7 @@ volatile std::int32_t most = 0;
 volatile unsigned interrupts = 0;
 volatile std::uint32_t interrupted_at = 0;  // microseconds
 
-// By how much the clock is ahead of the time, in counts; by less than a tick, if the time is right.
+// How far the clock is ahead of the time, in counts: less than a tick, if the time is right.
 std::int32_t ahead() {
   const auto lock = robosync_kernel.lock_interrupts();
   const auto time = static_cast<std::uint32_t>(robosync_kernel.now());

@@ -1,4 +1,4 @@
-// Threads woken by interrupts: none is lost, at whatever instruction they come.
+// Threads woken by interrupts: no wake-up is lost, whichever instruction is interrupted.
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
@@ -28,8 +28,8 @@ volatile unsigned lost = 0;
 volatile unsigned taken = 0;
 volatile std::uint32_t longest_ticks = 0;
 
-// One interrupt after `ticks` of 25 MHz, which signals kPosted to `waiter`. The timer goes on from
-// kFull then, so that it says how long ago the interrupt was.
+// One interrupt after `ticks` of 25 MHz, which signals kPosted to `waiter`. The timer then continues from
+// kFull, so that it shows how long ago the interrupt was.
 void post_after(std::uint32_t ticks) {
   timer().control = 0;
   timer().reload = kFull;
@@ -37,7 +37,7 @@ void post_after(std::uint32_t ticks) {
   timer().control = kTimerOn;
 }
 
-// Delays that in the course of a test put the interrupt on every instruction within reach.
+// Delays that put the interrupt on every instruction within reach in the course of a test.
 std::uint32_t delay(unsigned round) {
   return 1 + round * 7 % 397;
 }
@@ -51,7 +51,7 @@ void interrupt_wakes() {
 
 constexpr unsigned kRounds = 4000;
 
-// Signals and takes an event of its own all the time, while the interrupt signals another one: both
+// Signals and takes its own event all the time, while the interrupt signals another one: both
 // change the same words.
 void busy_taker(void* argument) {
   auto& self = *static_cast<rig::Thread*>(argument);
@@ -76,7 +76,7 @@ void no_event_is_lost() {
   CHECK(lost == 0);
 }
 
-// Waits for the interrupt, with and without a deadline, and notes how late it runs.
+// Waits for the interrupt, with and without a deadline, and records how late it runs.
 void catcher(void*) {
   for (unsigned round = 0; round < kRounds; ++round) {
     post_after(delay(round));
@@ -99,7 +99,7 @@ void waits_for_own(void*) {
 
 rig::Thread* volatile above = nullptr;
 
-// Wakes the thread above, which goes to wait again at once; then computes for a while.
+// Wakes the thread above, which waits again immediately; then computes for a while.
 void waker(void*) {
   while (true) {
     robosync_kernel.signal(*above, kOwn);
@@ -108,8 +108,8 @@ void waker(void*) {
   }
 }
 
-// The thread the interrupt wakes ranks between one that goes to wait and one that is to run then:
-// at whatever instruction of the switch the interrupt comes, the woken one must be next.
+// The thread that the interrupt wakes ranks between one that begins to wait and the one that would run next:
+// whichever instruction of the switch is interrupted, the woken one must run next.
 void woken_runs_next() {
   taken = 0;
   longest_ticks = 0;
@@ -127,7 +127,7 @@ volatile bool measuring = false;
 volatile unsigned measured = 0;
 volatile std::uint32_t latest = 0;
 
-// Instead of waking a thread: how long ago the timer struck. Then the next one.
+// Instead of waking a thread, measures how long ago the timer expired. Then starts the next measurement.
 void measure() {
   const std::uint32_t late = kFull - timer().value;
   if (late > latest) latest = late;
@@ -157,8 +157,8 @@ void sleeps(void*) {
     rig::sleep_ms(1);
 }
 
-// What the kernel holds off costs others up to the length of its critical sections, and these not
-// one tick more than when it does nothing.
+// Interrupts that the kernel masks are delayed by at most its longest critical section; those above its level are not
+// delayed by one tick more than when the kernel does nothing.
 void urgent_interrupts() {
   const std::uint32_t floor = worst_lateness(0);
   above = &rig::start(0, 49, waits_for_own);
@@ -167,7 +167,7 @@ void urgent_interrupts() {
   rig::start(3, 40, waker);
   const std::uint32_t urgent = worst_lateness(0);
   const std::uint32_t held_off = worst_lateness(core::kKernelPriority);
-  CHECK(urgent <= floor + 1);  // the two clocks beat
+  CHECK(urgent <= floor + 1);  // the two clocks are not in phase
   CHECK(held_off > floor + 8);
 }
 

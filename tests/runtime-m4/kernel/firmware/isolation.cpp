@@ -1,7 +1,7 @@
-// What a thread without privileges cannot do: each attempt stops it, is described, and costs the
+// What an unprivileged thread cannot do: each attempt stops it, is described, and costs the
 // others nothing.
 //
-// Code of such a thread touches its stack, rig::granted_area() and registers only, so the checks are
+// The code of such a thread uses only its stack, rig::granted_area() and registers, so the checks are
 // in the conductor.
 #include <algorithm>
 
@@ -29,7 +29,7 @@ constexpr std::uint32_t kMark = 0xC0FFEE11;
 volatile unsigned beats = 0;
 volatile unsigned late_beats = 0;
 
-// Wakes every millisecond; nothing of lower rank may cost it a beat.
+// Wakes every millisecond; no thread of lower rank may cost it a beat.
 void heart(void*) {
   robosync::kernel::Time due = robosync_kernel.now();
   for (;;) {
@@ -51,11 +51,11 @@ std::uint32_t address_of(const volatile void* of) {
   return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(of));
 }
 
-// What the victim finds in the open area.
+// The words in the granted area for the victim.
 enum Word : std::uint8_t { kTarget, kDone };
 
-// Starts `entry` without privileges beside the heart and the safety thread, and expects it to be
-// stopped with `cause`, while the others go on.
+// Starts `entry` unprivileged, in addition to the heart and the safety thread, and expects it to be
+// stopped with `cause`, while the others continue.
 void expect_fault(void (*entry)(void*), std::uint32_t cause, std::uint32_t target = 0) {
   beats = 0;
   late_beats = 0;
@@ -83,7 +83,7 @@ void expect_pc_in(void (*entry)(void*), std::uint32_t bytes) {
   CHECK(rig::last_fault().pc - code < bytes);
 }
 
-// r0 is the open area: what it points at is the address.
+// r0 is the granted area, whose first word is the address.
 [[gnu::naked]] void read_target(void*) {
   asm volatile(
       "movw r1, #:lower16:granted_area_of_tests \n"
@@ -173,7 +173,7 @@ void read_peripheral() {
 void write_peripheral() {
   expect_no_write(0x4000'8000);  // the watchdog
 }
-// The core's own registers: the bus refuses, whatever the MPU says.
+// The core's own registers: the bus refuses access, whatever the MPU allows.
 void read_system() {
   expect_no_read(core::kVtor, kPreciseBusError);
 }
@@ -225,7 +225,7 @@ void stack_pointer_to_kernel() {
   CHECK(rig::last_fault().pc == 0);
   CHECK(std::equal(before.begin(), before.end(), last));
 }
-// … or finds it, but saving with privileges would write into others' memory.
+// … or finds room, but privileged saving would write into others' memory.
 void stack_pointer_to_granted_area() {
   const std::uint32_t bottom = address_of(rig::granted_area().data());
   const auto* const below = reinterpret_cast<const std::uint32_t*>(bottom) - 16;
@@ -233,7 +233,7 @@ void stack_pointer_to_granted_area() {
   std::copy(below, below + before.size(), before.begin());
   expect_fault(stack_pointer_to_target, kStackOverflow, bottom + 40);
   CHECK(std::equal(before.begin(), before.end(), below));
-  CHECK(rig::last_fault().pc == 0);  // that frame is not believed
+  CHECK(rig::last_fault().pc == 0);  // that frame is not trusted
 }
 void no_room_to_save() {
   std::byte* const bottom = rig::stack_of(kVictim).data();
@@ -273,7 +273,7 @@ void fault_inside_fault() {
   expect_fault(faults_twice, kUndefinedInstruction | kStackingViolation);
 }
 
-// Registers that only privileges change: writing them does nothing, or what the core offers for it.
+// Registers that only privileged code may change: writing them does nothing, or only what the core allows.
 [[gnu::naked]] void grabs_privileges(void*) {
   asm volatile(
       "movs r0, #0                           \n"
@@ -291,7 +291,7 @@ void no_way_to_privileges() {
 [[gnu::naked]] void loops(void*) {
   asm volatile("1: b 1b");
 }
-// It is outranked: the heart beats, safety looks. Nobody stops it.
+// The heart and the safety thread outrank it and keep running. Nothing stops it.
 void endless_loop() {
   beats = 0;
   late_beats = 0;
@@ -306,7 +306,7 @@ void endless_loop() {
   CHECK(rig::safety_lateness() == 0);
 }
 
-// Thread 1 and thread 2 take turns, and none sees the other's stack.
+// Thread 1 and thread 2 take turns, and neither can see the other's stack.
 void windows_change() {
   rig::start_unprivileged(kVictim, 40, loops);
   rig::start_unprivileged(2, 41, write_target, rig::Category::behavior, "victim");

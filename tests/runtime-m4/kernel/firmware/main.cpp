@@ -1,4 +1,4 @@
-// Runs every scenario on the board, then two resets, and says "N passed, N failed".
+// Runs every scenario on the board, then two resets, and prints "N passed, N failed".
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
@@ -16,7 +16,7 @@ namespace {
 namespace core = robosync::port::core;
 using semihosting::print;
 
-// What has happened so far; survives the resets that are part of the test.
+// The progress so far; survives the resets that are part of the test.
 struct Progress {
   std::uint32_t magic;
   std::uint32_t boots;
@@ -99,7 +99,7 @@ void run_all(std::span<const rig::Scenario> scenarios) {
   semihosting::exit(good ? 0 : 1);
 }
 
-// First boot: all scenarios, then a fault where nothing can go on.
+// First boot: all scenarios, then a fault after which nothing can continue.
 void first_boot() {
   run_all(rig::scheduling_scenarios());
   run_all(rig::register_scenarios());
@@ -123,7 +123,7 @@ void first_boot() {
   finish();
 }
 
-// Second boot: what the first one left; then a thread's fault that its switch could not follow.
+// Second boot: checks the record of the first one; then a thread's fault after which no switch is possible.
 void second_boot() {
   begin();
   CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::software);
@@ -140,7 +140,7 @@ void second_boot() {
   finish();
 }
 
-// Third boot: what that left; then the watchdog against a thread that locks up.
+// Third boot: checks the record of the second one; then the watchdog against a thread that locks up.
 void third_boot() {
   begin();
   CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::software);
@@ -166,7 +166,7 @@ void fourth_boot() {
   end("threads wake from idle");
   run_all(rig::idle_scenarios());
   begin();
-  CHECK(progress.kicked);  // else it struck before the board locked up
+  CHECK(progress.kicked);  // otherwise it fired before the board locked up
   CHECK(robosync_board.reset_reason() == robosync::link::ResetReason::watchdog);
   CHECK(robosync::boards::last_fault() == nullptr);
   end("the watchdog resets a board that has locked up");

@@ -1,5 +1,5 @@
 // Mutexes on the board: the cases of mutex_cases.hpp with real preemption, a holder that faults,
-// and the bus that they are for.
+// and a bus that they protect.
 #include "runtime-m4/kernel/mutex.hpp"
 
 #include <utility>
@@ -43,11 +43,11 @@ void holder_faults() {
   CHECK(shared.held());
 }
 
-// Two sensor threads on one bus: a transfer takes half a millisecond, so the higher one wakes in
-// the middle of the lower one's. Each reads a register of the thermometer that the other does not.
+// Two sensor threads on one bus: a transfer takes half a millisecond, so the higher one wakes during
+// the lower one's. Each reads a different register of the thermometer.
 struct Reader {
   std::uint8_t input;  // register
-  vm::Value expected;  // what it holds after reset, the high byte first on the bus
+  vm::Value expected;  // its value after reset, high byte first on the bus
   unsigned good = 0;
   unsigned bad = 0;
 };

@@ -1,4 +1,4 @@
-// No register of a thread changes while it does not run.
+// A thread's registers do not change while it does not run.
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
 namespace {
@@ -11,7 +11,7 @@ struct CoreImage {
   std::array<std::uint32_t, 13> r;  // r0 … r12
 };
 
-// Loads all FPU registers, stays in a loop for a while, stores them.
+// Loads all FPU registers, loops for a while, then stores them.
 void hold_fpu(const FpuImage& in, FpuImage& out, std::uint32_t turns) {
   asm volatile(
       "vldmia %1, {s0-s31}   \n"
@@ -25,7 +25,7 @@ void hold_fpu(const FpuImage& in, FpuImage& out, std::uint32_t turns) {
         "s25", "s26", "s27", "s28", "s29", "s30", "s31");
 }
 
-// The same for r0 … r12 and the flags' neighbour lr; the loop counts on the stack.
+// The same for r0 … r12 and lr; the loop counter is on the stack.
 [[gnu::naked, gnu::noinline]] void hold_core(const CoreImage*, CoreImage*, std::uint32_t) {
   asm volatile(
       "push  {r1, r2, r4-r11, lr}  \n"
@@ -63,7 +63,7 @@ void use_all_registers(std::uint32_t pattern) {
   rounds = rounds + 1;
 }
 
-// Interrupts the others every millisecond with registers of its own.
+// Preempts the others every millisecond, with its own register values.
 void disturber(void*) {
   for (unsigned i = 0;; ++i) {
     rig::sleep_ms(1);
@@ -79,7 +79,7 @@ void registers_survive() {
     for (unsigned i = 0;; ++i)
       use_all_registers(0x1000'0000 + i * 64);
   });
-  // Competes with the one above on its level, so that both are preempted by each other's wake-ups.
+  // Has the same level as the one above, so that each is preempted by the other's wake-ups.
   rig::start(2, 45, [](void*) {
     for (unsigned i = 0;; ++i) {
       use_all_registers(0x5000'0000 + i * 64);

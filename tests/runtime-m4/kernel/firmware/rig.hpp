@@ -1,4 +1,4 @@
-// What the scenarios share: checks, threads to play with, and a way to print.
+// Shared by the scenarios: checks, worker threads, and printing.
 #pragma once
 
 #include <array>
@@ -45,21 +45,21 @@ inline constexpr unsigned kWorkers = 4;
 inline constexpr std::size_t kWorkerStack = 768;
 Thread& start(unsigned index, std::int16_t priority, void (*entry)(void*),
               Category category = Category::behavior, const char* name = "worker");
-// The same without privileges: it may read and write `granted_area()`, and its stack is smaller.
+// The same, unprivileged: it may read and write `granted_area()`, and its stack is smaller.
 inline constexpr std::size_t kUnprivilegedStack = 512;
 Thread& start_unprivileged(unsigned index, std::int16_t priority, void (*entry)(void*),
                            Category category = Category::behavior, const char* name = "worker");
 std::span<std::uint32_t> granted_area();  // kGrantedWords
 inline constexpr std::size_t kGrantedWords = 64;
-std::span<std::byte> stack_of(unsigned index);  // of a worker, whatever runs on it
+std::span<std::byte> stack_of(unsigned index);  // a worker's stack, whatever runs on it
 
 Thread& conductor();
 
 // Sleeps for some milliseconds.
 void sleep_ms(std::uint32_t ms);
 
-// A thread of category safety that looks at the time every 10 ms, as the safety monitor does. Its
-// checks so far, and the most that one came too late, in microseconds.
+// A thread of category safety that checks the time every 10 ms, as the safety monitor does. The number of
+// its checks so far, and the worst lateness, in microseconds.
 void watch_safety();
 unsigned safety_checks();
 std::uint64_t safety_lateness();
@@ -68,7 +68,7 @@ std::uint64_t safety_lateness();
 unsigned faults();
 const robosync::link::Fault& last_fault();
 
-// Notes a failed check; CHECK prints where.
+// Records a failed check; CHECK prints where.
 void fail(const char* file, int line, const char* what);
 #define CHECK(condition)                                              \
   do {                                                                \

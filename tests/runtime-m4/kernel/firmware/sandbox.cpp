@@ -1,5 +1,5 @@
-// A function without privileges in the midst of a thread of category safety: what it gives back, and that it can spoil
-// nothing of its caller. What it must not touch is a fault that ends everything: tests/e2e/test_isolation.py.
+// An unprivileged function called by a thread of category safety: what it returns, and that it cannot damage its
+// caller. An access to forbidden memory is a fault that ends everything: tests/e2e/test_isolation.py.
 #include <array>
 
 #include "runtime-m4/port/port.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using robosync::port::Sandbox;
 
-constexpr unsigned kCalls = 20'000;  // some milliseconds of them, with a tick in each
+constexpr unsigned kCalls = 20'000;  // several milliseconds, with a tick in each
 
 alignas(512) std::array<std::byte, 512> window;
 Sandbox sandbox;
@@ -17,7 +17,7 @@ Sandbox sandbox;
 volatile unsigned good = 0;
 volatile bool done = false;
 
-// r0 + r1 + r2, and all that a function must not do to registers and stack.
+// Returns r0 + r1 + r2, and does everything to registers and stack that a function must not do.
 [[gnu::naked]] std::int32_t adds_and_spoils(void*, const void*, void*) {
   asm volatile(
       "add  r0, r0, r1 \n"
@@ -35,7 +35,7 @@ volatile bool done = false;
       "bx   lr         \n");
 }
 
-// Whether all registers that a function keeps are kept over a call that gives 1 + 2 + 4.
+// Whether a call that returns 1 + 2 + 4 preserves all callee-saved registers.
 [[gnu::naked]] bool call_keeps_registers(const Sandbox*) {
   asm volatile(
       "push {r4-r11, lr}  \n"
@@ -81,7 +81,7 @@ void calls(void*) {
   done = true;
 }
 
-// The heart's interrupts come at every place of a call.
+// The heart interrupts the call at every instruction.
 void nothing_is_spoiled() {
   good = 0;
   done = false;

@@ -1,4 +1,4 @@
-// Preemption, order and time on the board: the same promises the host tests check, with real
+// Preemption, order and time on the board: the same guarantees as in the host tests, with real
 // context switches and a real tick.
 #include "tests/runtime-m4/kernel/firmware/rig.hpp"
 
@@ -82,7 +82,7 @@ void ended_thread_is_stopped() {
   CHECK(rig::faults() == 0);
 }
 
-// 200 timed wake-ups of three threads at once: each comes at its tick.
+// 200 timed wake-ups of three threads at the same time: each comes at its tick.
 std::array<unsigned, 3> late;
 std::array<unsigned, 3> woken;
 
@@ -122,8 +122,8 @@ void stack_use_is_known() {
   CHECK(used < rig::kWorkerStack);
 }
 
-// A thread of lower rank spins while the conductor sleeps: the time is nearly all its own, and no
-// count is anybody else's.
+// A thread of lower rank spins while the conductor sleeps: nearly all of the time is counted for it, and none
+// for any other thread.
 void run_time_is_known() {
   rig::Thread& spinner = rig::start(0, rig::kConductor - 1, [](void*) {
     while (true)

@@ -1,7 +1,7 @@
 // The debugger's console and exit, which QEMU offers with -semihosting.
 //
-// All that is passed by address stands in flash: QEMU looks up the rights to a page of RAM at the
-// page's beginning, and that may be a guard.
+// Everything passed by address is in flash: QEMU checks the access rights of a page of RAM at the
+// page's beginning, which may be a guard.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,12 @@
 // Hours of virtual time on the board: many threads signal, wait, sleep and take mutexes at random,
 // one changes their priorities and its own, and a timer interrupts them after random times, at any
-// instruction. Every decision of the context switch, and who runs at every fourth interrupt, is
-// compared with a naive policy that goes over all threads; after each change of a priority the
-// order is looked at. Says "N decisions compared".
+// instruction. Every decision of the context switch, and the running thread at every fourth interrupt, is
+// compared with a naive policy that searches all threads; after each change of a priority the
+// order is checked. Prints "N decisions compared".
 //
-// The decision is seen right behind the switch, as it is shipped: before it begins, an interrupt of its own
-// level is made pending, which is then taken before the chosen thread executes anything. So the vector table leads
-// to __wrap_PendSV_Handler, by the linker's --wrap (firmware.cmake). run_stress.sh runs it.
+// The decision is checked right after the shipped switch: before the switch begins, an interrupt of the same
+// level is pended, which is taken before the chosen thread executes anything. For this, the vector table points
+// to __wrap_PendSV_Handler, by the linker's --wrap (firmware.cmake). run_stress.sh runs this.
 #include <array>
 #include <bit>
 
@@ -25,7 +25,7 @@ namespace {
 using namespace robosync::kernel;
 namespace core = robosync::port::core;
 
-// Seconds of virtual time to run; run_stress.sh has QEMU put them there.
+// Seconds of virtual time to run; run_stress.sh makes QEMU write them there.
 std::uint32_t seconds() {
   return *reinterpret_cast<const volatile std::uint32_t*>(0x2100'0000);
 }
@@ -33,12 +33,12 @@ std::uint32_t seconds() {
 constexpr unsigned kWorkers = 40;
 constexpr unsigned kMutexes = 3;
 
-// What the naive policy knows of a thread, by a book of its own.
+// The naive policy's own record of a thread.
 struct Worker {
   Thread thread;
   alignas(32) std::array<std::byte, 384> stack;
   Events signalled;  // and perhaps not yet taken
-  Events wanted;     // 0: it does not wait for any
+  Events wanted;     // 0: it waits for none
   Time deadline;
   bool waits;  // or is about to
 };
@@ -47,8 +47,8 @@ std::array<Mutex, kMutexes> mutexes = {Mutex{Category::control}, Mutex{Category:
                                        Mutex{Category::processing}};
 constexpr std::array kCeilings = {Category::control, Category::behavior, Category::processing};
 std::array<Thread*, kMutexes> holders{};
-// While priorities change, only the threads of its category use a mutex: the others might come to
-// stand above its ceiling.
+// While priorities change, only the threads of its category use a mutex: the others might rise
+// above its ceiling.
 bool adapting = false;
 unsigned users = 0;  // threads that use a mutex, or are about to
 
@@ -94,8 +94,8 @@ unsigned ceiling_of(unsigned mutex) {
   return rank;
 }
 
-// The policy in the plainest words: the highest thread that can run, unless someone holds a mutex
-// whose ceiling is not below it; then the holder, of the latest if of several.
+// The policy: the highest thread that can run, unless a thread holds a mutex whose ceiling is not
+// below it; then that holder, with several mutexes that of the latest.
 const Thread* highest_ready() {
   for (const Thread* thread : robosync_kernel.threads())
     if (robosync_kernel.state(*thread) == Thread::State::ready) return thread;
@@ -122,25 +122,25 @@ bool switch_is_active() {
 bool tick_is_active() {
   return (core::reg(core::kShcsr) & 1U << 11) != 0;
 }
-// Then it may be that a deadline has come, and that who waited for it is still to be woken.
+// If so, a deadline may have passed whose thread is still to be woken.
 bool tick_is_due() {
   return tick_is_active() || (core::reg(core::kIcsr) & core::kIcsrSysTickSet) != 0;
 }
 
-// Has it been signalled what it waits for, or is its time over? By the book, not by the kernel.
+// Has it got an event that it waits for, or has its time passed? According to the record, not the kernel.
 bool can_surely_run(const Worker& worker) {
   return !worker.waits || (worker.signalled & worker.wanted) != 0 ||
          (worker.deadline <= robosync_kernel.now() && !tick_is_due());
 }
 
-// False between taking or giving back a mutex, and noting it.
+// False between taking or releasing a mutex and recording that.
 bool book_is_right() {
   for (unsigned m = 0; m < kMutexes; ++m)
     if (mutexes[m].held() != (holders[m] != nullptr)) return false;
   return true;
 }
 
-// With the kernel locked, and no switch on its way.
+// Call it with the kernel locked and no switch pending.
 void compare_decision() {
   if (!book_is_right()) return;
   const Thread& runs = robosync_kernel.current();
@@ -165,8 +165,8 @@ void wait(Worker& self, Events mask, Time deadline) {
     self.deadline = deadline;
     self.waits = true;
   }
-  // What the book says is true once the thread has begun to wait; so that it is when others look,
-  // they look at what is ready only. A wait that ends at once changes nothing.
+  // The record becomes true when the thread has begun to wait. Therefore others check only threads that
+  // are ready. A wait that ends immediately changes nothing.
   robosync_kernel.wait(mask, deadline);
   const auto lock = robosync_kernel.lock_interrupts();
   self.waits = false;
@@ -250,7 +250,7 @@ void begin_or_end_adapting(bool begin) {
   }
 }
 
-// A while of changes, and a while without.
+// Alternates between a time with changes and one without.
 void adapt(void*) {
   Draw draw(48271);
   while (true) {
@@ -288,7 +288,7 @@ void interrupt_after(std::uint32_t cycles) {
   timer().control = 0b1001;
 }
 
-// Where a thread was interrupted.
+// Records where a thread was interrupted.
 void note_where() {
   std::uint32_t frame = 0;
   asm volatile("mrs %0, psp" : "=r"(frame));
@@ -351,14 +351,14 @@ bool start() {
 
 extern "C" {
 
-// The comparison behind a context switch, unless an interrupt has already asked for another.
+// The comparison after a context switch, unless an interrupt has already requested another switch.
 void TestsOwn_Handler();
 void TestsOwn_Handler() {
   const auto lock = robosync_kernel.lock_interrupts();
   if (!switch_is_pending()) compare_decision();
 }
 
-// Leaves lr and r4–r11 as the switch must find them.
+// Leaves lr and r4–r11 as the switch expects them.
 [[gnu::naked]] void __wrap_PendSV_Handler();  // NOLINT: --wrap
 void __wrap_PendSV_Handler() {                // NOLINT
   asm volatile(

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Has spin try the models of switching and waking (switch.pml) and of uploads and what outlasts a reset (update/model/upload.pml)
+"""Has spin check the models of switching and waking (switch.pml) and of uploads and the store (update/model/upload.pml)
 in every order, then each of their mutants, in which it must find the mistake. Ends with "N passed, N failed".
 
 usage: tests/runtime-m4/kernel/model/check_model.py
@@ -13,13 +13,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-# With the fewest states of the model as it is: fewer would mean that it got stuck.
+# With the fewest states of the model without a mutant: fewer would mean that it got stuck.
 MODELS = {HERE / "switch.pml": 1_000_000, HERE.parents[1] / "update/model/upload.pml": 100_000}
 DEPTH = 500_000
 
 
 def search(model, mutant):
-    """(states, errors) that spin has found in all orders, or until the first error."""
+    """(states, errors) that spin has found over all orders, or until the first error."""
     with tempfile.TemporaryDirectory(prefix="robosync-model-") as folder:
         for command in (["spin", "-a", *([f"-D{mutant}"] if mutant else []), str(model)],
                         ["gcc", "-w", "-O0", "-DSAFETY", "-DMEMLIM=1000", "-o", "pan", "pan.c"]):
