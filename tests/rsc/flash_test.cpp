@@ -76,7 +76,7 @@ TEST_CASE("flash calls openocd, else pyocd, and says with which words") {
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   CHECK(computer.read("pyocd.told") == "flash\n--target\nstm32l475xg\n" + computer.hex + "\n");
-  CHECK_THAT(outcome.out, Contains("runs pyocd flash --target stm32l475xg " + computer.hex));
+  CHECK_THAT(outcome.out, Contains("running pyocd flash --target stm32l475xg " + computer.hex));
 
   computer.install("openocd");
   outcome = computer.flash({computer.bin});  // the .hex beside it, which says where it belongs

@@ -456,7 +456,8 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK_THAT(outcome.out, Contains("W0203 (note): WHEN/ELSE acts at start"));
   CHECK(json::parse(test::rsc({"explain", "E0301", "--format", "json"}).out).at("code") == "E0301");
   CHECK(test::rsc({"explain", robot.write("wrong.rsl", "WHEN touch DO\n")}).exit == 1);
-  outcome = test::rsc({"explain", robot.write("unknown.rsl", "WHEN tuch LEVEL > 3 DO\nEND\n")});
+  outcome = test::rsc(
+      {"explain", robot.write("unknown.rsl", "WHEN tuch LEVEL > 3 DO\n  LOG \"x\"\nEND\n")});
   CHECK(outcome.exit == 1);
   CHECK(outcome.out.empty());
   CHECK_THAT(outcome.err, Contains("E0301") && Contains("did you mean `touch`?"));
