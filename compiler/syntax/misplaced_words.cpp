@@ -175,7 +175,7 @@ private:
     if (!is(begins, Kinds::DO) || (asks_first && !has(*block, stop_, Kinds::DO)))
       return std::nullopt;
     report(Code::E0010, quote(stop_) + " cannot be used inside a response", tokens_[stop_].span)
-        .label(tokens_[*block].span, "the response to this continues until its `END`", false)
+        .label(tokens_[*block].span, "this block continues until its `END`", false)
         .helps("rules follow one another: close the first with `END` before the next begins")
         .helps("to check once while the response runs, write `IF`");
     return change(stop_, begins - stop_,
@@ -208,7 +208,7 @@ private:
     report(Code::E0010,
            quote(stop_) + " begins a step of a TEST and cannot be used inside a response",
            tokens_[stop_].span)
-        .label(tokens_[*block].span, "the response to this continues until its `END`", false)
+        .label(tokens_[*block].span, "this block continues until its `END`", false)
         .helps("close it with `END` and write `TEST \"…\"` above the steps");
     return change(stop_, last - stop_, {missing(Kinds::THEN, stop_)});
   }
