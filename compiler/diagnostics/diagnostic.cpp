@@ -241,7 +241,7 @@ void Diagnostics::merge_repeated() {
   }
   for (Diagnostic& one : merged)
     if (one.repeated >= most)
-      one.helps("it is in " + std::to_string(one.repeated - most + 1) + " more places");
+      one.helps("it appears in " + std::to_string(one.repeated - most + 1) + " more places");
   all_ = std::move(merged);
 }
 

@@ -83,7 +83,7 @@ ast::Name Builder::whole_number(Span span) {
   const std::string_view text = text_of(span);
   // Text that does not begin with a digit was already repaired and reported by repair.cpp.
   if (!text.empty() && is_digit(text.front()) && !all_digits(text)) {
-    report(Code::E0004, "a whole number without a unit is needed here").label(span);
+    report(Code::E0004, "this must be a whole number without a unit").label(span);
   }
   return name(span);
 }
@@ -127,7 +127,7 @@ ast::Box<ast::Expr> Builder::times_within(Span span, ast::Box<ast::Expr> conditi
   std::uint32_t count = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
   if (error == std::errc::result_out_of_range) {
-    report(Code::E0004, "a condition cannot be counted that often").label(times);
+    report(Code::E0004, "a condition cannot be counted that many times").label(times);
   }
   return expr(span, ast::TimesWithin{std::move(condition), count, std::move(within)});
 }
@@ -177,7 +177,7 @@ void Builder::report_worked_out(const ast::Argument& first, const ast::Argument&
     const std::size_t value = std::min(text.find_first_not_of(" \t", word), text.size());
     all.begin += static_cast<std::uint32_t>(value);
   }
-  report(Code::E0505, "a value that is worked out stands in brackets here")
+  report(Code::E0505, "a calculated value needs brackets here")
       .label(all)
       .helps("write `(" + std::string(text_of(all)) + ")`");
 }
@@ -217,7 +217,7 @@ void Builder::set_priority(ast::Modifiers& modifiers, Span keyword, Span number)
 void Builder::cannot_be_kept(Span kept) {
   report(Code::E0010, "only a REMEMBER can be KEPT")
       .label(kept)
-      .helps("what is kept is a number: `REMEMBER visits = 0 KEPT`");
+      .helps("`KEPT` keeps a number: `REMEMBER visits = 0 KEPT`");
 }
 
 void Builder::set_restarting(ast::Modifiers& modifiers, Span keyword) {
@@ -236,9 +236,9 @@ void Builder::add_part(ast::Behavior& behavior, ast::Item item) {
     const std::string_view text = text_of(item.span);
     const std::string keyword(text.substr(0, text.find_first_of(" \t\r\n")));
     const auto length = static_cast<std::uint32_t>(keyword.size());
-    report(Code::E0010, "`" + keyword + "` cannot stand in a BEHAVIOR")
+    report(Code::E0010, "`" + keyword + "` cannot be used in a BEHAVIOR")
         .label({item.span.file, item.span.begin, item.span.begin + length})
-        .helps("a BEHAVIOR holds rules and REMEMBER; move this in front of it");
+        .helps("a BEHAVIOR holds rules and REMEMBER; move this before it");
     moved_out_.push_back(std::move(item));
   }
 }

@@ -38,7 +38,7 @@ private:
     if (end == 1 || is(1, Kinds::STRING) || has(1, end, Kinds::STRING)) return std::nullopt;
     const Span name = span(1, end);
     const std::string quoted = "\"" + text(1, end) + "\"";
-    report(Code::E0001, "the name of a TEST stands in quotes", name)
+    report(Code::E0001, "the name of a TEST goes in quotes", name)
         .helps("write `TEST " + quoted + "`")
         .fix(name, quoted);
     return change(0, end, {{Kinds::TEST, tokens_[0].span}, {Kinds::STRING, name}});
@@ -53,10 +53,10 @@ private:
     if (!outside || is(stop_ + 1, Kinds::START) || !(is(stop_, Kinds::IF) || foreign))
       return std::nullopt;
     report(Code::E0010,
-           foreign ? "a rule begins with WHEN, not with " + quote(stop_)
-                   : "IF asks once, inside a rule; a rule of its own begins with WHEN",
+           foreign ? "a rule begins with `WHEN`, not with " + quote(stop_)
+                   : "`IF` checks once, inside a rule; a rule begins with `WHEN`",
            tokens_[stop_].span)
-        .helps("write `WHEN` in the place of this " + quote(stop_))
+        .helps("write `WHEN` instead of this " + quote(stop_))
         .fix(tokens_[stop_].span, "WHEN", Applicability::likely);
     return change(stop_, 1, {{Kinds::WHEN, tokens_[stop_].span}});
   }
@@ -77,15 +77,15 @@ private:
     const bool asks = is(stop_ + 2, Kinds::DO) || is(stop_ + 3, Kinds::DO);
     if (is_any_name(stop_, {"AFTER", "IN"}) && is(stop_ + 1, Kinds::QUANTITY) && asks) {
       const std::string time(text(stop_ + 1));
-      report(Code::E0010, "no rule begins with " + quote(stop_), here)
-          .helps("once, so long after the start: `AT START DO`, and then `WAIT " + time + "`")
-          .helps("again and again: `EVERY " + time + " DO`");
+      report(Code::E0010, "a rule cannot begin with " + quote(stop_), here)
+          .helps("to act once after the start, write `AT START DO`, then `WAIT " + time + "`")
+          .helps("to act again and again, write `EVERY " + time + " DO`");
       return change(stop_, 1, {{Kinds::EVERY, here}});
     }
     if (block || !is_any_name(stop_, {"IMPORT", "INCLUDE", "USING", "REQUIRE"}) ||
         end_ != stop_ + 2)
       return std::nullopt;
-    report(Code::E0001, "a module is brought in with USE", here)
+    report(Code::E0001, "a module is included with `USE`", here)
         .helps("write `USE " + std::string(text(stop_ + 1)) + "`")
         .fix(here, "USE", Applicability::likely);
     return change(stop_, 2);
@@ -150,12 +150,12 @@ private:
     const Span all = span(begin, end);
     const std::string what = "`" + std::string(source_.text(all)) + "`";
     if (phrase.kind == Kinds::CHANGES) {
-      report(Code::E0001, "no condition has " + what, all)
-          .helps("`CHANGES` asks for any change, up or down; `> 3` for what is above a border");
+      report(Code::E0001, "a condition cannot use " + what, all)
+          .helps("`CHANGES` is any change, up or down; for a value above a threshold, write `> 3`");
       return change(begin, end - begin, {{Kinds::CHANGES, all}});
     }
     if (phrase.kind == Kinds::IS && end < tokens_.size() && is_relation(tokens_[end].kind)) {
-      report(Code::E0001, "no " + what + " stands in front of " + quote(end), all)
+      report(Code::E0001, quote(end) + " takes no " + what + " before it", all)
           .fix({all.file, all.begin, tokens_[end].span.begin}, "", Applicability::likely);
       return change(begin, end - begin);
     }
@@ -188,13 +188,13 @@ private:
     if (!named || !is(name, Kinds::NAME) || !is(sign, Kinds::EQUAL)) return std::nullopt;
     const bool fixed = is_name(statement_, "CONST");
     const std::string word = fixed ? "LET" : "REMEMBER";
-    Diagnostic& d = report(Code::E0001,
-                           fixed ? "a number with a name is declared with LET"
-                                 : "what is remembered is declared with REMEMBER",
-                           tokens_[statement_].span);
+    Diagnostic& d = report(
+        Code::E0001,
+        fixed ? "a named number is declared with `LET`" : "a variable is declared with `REMEMBER`",
+        tokens_[statement_].span);
     const std::string better = word + " " + text(name, statement_end());
     if (open_block()) {
-      d.helps("write `" + better + "` at the top, outside of all blocks");
+      d.helps("write `" + better + "` at the top, outside all blocks");
       return change(statement_, statement_end() - statement_, nothing_to_do());
     }
     d.helps("write `" + better + "`").fix(tokens_[statement_].span, word, Applicability::likely);
@@ -212,12 +212,12 @@ private:
         indentation(tokens_[stop_], source_) <= indentation(tokens_[*block], source_))
       return std::nullopt;
     const bool counts = is(stop_, Kinds::LET) || is(stop_, Kinds::REMEMBER);
-    Diagnostic& d =
-        report(Code::E0010, quote(stop_) + " cannot stand inside a response", tokens_[stop_].span);
-    d.label(tokens_[*block].span, "this block goes on up to its END", false)
-        .helps("write the line at the top");
+    Diagnostic& d = report(Code::E0010, quote(stop_) + " cannot be used inside a response",
+                           tokens_[stop_].span);
+    d.label(tokens_[*block].span, "this block continues until its `END`", false)
+        .helps("move the line to the top of the program");
     if (counts)
-      d.helps("what changes while the robot runs is a `REMEMBER`, which `SET` gives a value here");
+      d.helps("for a value that changes while the robot runs, use `REMEMBER`, and `SET` it here");
     return change(statement_, end_ - statement_, nothing_to_do());
   }
 
@@ -240,7 +240,7 @@ private:
       head.push_back({Kinds::WITH, tokens_[open].span});
       head.insert(head.end(), token_at(values), token_at(close));
     }
-    report(Code::E0001, "commands get a name with DEFINE, not with " + quote(first),
+    report(Code::E0001, "commands get a name with `DEFINE`, not with " + quote(first),
            tokens_[first].span)
         .helps("write `" + better + "`")
         .fix(span(first, end_), better, Applicability::likely);
@@ -263,7 +263,7 @@ private:
     const bool prints = is_name(statement_, "PRINT");
     const std::string command = prints ? "LOG" : text(statement_, open);
     const std::string better = command + " " + text(open + 1, close);
-    report(Code::E0001, "no brackets stand around what is said", tokens_[open].span)
+    report(Code::E0001, "text takes no brackets around it", tokens_[open].span)
         .helps("write `" + better + "`")
         .fix(span(statement_, end), better, Applicability::likely);
     return change(open, end - open, Tokens(token_at(open + 1), token_at(close)));
@@ -273,7 +273,7 @@ private:
   std::optional<Edit> set_with_sign() {
     if (!begins_with(Kinds::SET) || !is(stop_, Kinds::EQUAL) || stop_ != statement_ + 2)
       return std::nullopt;
-    report(Code::E0001, "SET has TO between the name and its value, not `=`", tokens_[stop_].span)
+    report(Code::E0001, "`SET` takes `TO` before the value, not `=`", tokens_[stop_].span)
         .helps("write `SET " + std::string(text(statement_ + 1)) + " TO " +
                text(stop_ + 1, statement_end()) + "`")
         .fix(tokens_[stop_].span, "TO");
@@ -306,8 +306,8 @@ private:
         outside ? "REMEMBER " + name + " = " + written : word + name + preposition + written;
     const Span all = span(statement_, end);
     report(Code::E0001,
-           outside ? "what is remembered is declared with REMEMBER"
-                   : "a value is changed with SET, RAISE or LOWER",
+           outside ? "a variable is declared with `REMEMBER`"
+                   : "a value is changed with `SET`, `RAISE` or `LOWER`",
            span(statement_ + 1, value))
         .helps("write `" + better + "`")
         .fix(all, better, Applicability::likely);
@@ -334,10 +334,10 @@ private:
     const bool has_do = is(stop_ - 1, Kinds::DO) || is(stop_ + 2, Kinds::DO);
     const Span here = tokens_[stop_].span;
     if (!asks || has_do) {
-      report(Code::E0009, "no colon ends a line of RSL", here).fix(here, "");
+      report(Code::E0009, "a line of RSL does not end with a colon", here).fix(here, "");
       return change(stop_, 1);
     }
-    report(Code::E0001, "a line that asks ends with DO, not with a colon", here)
+    report(Code::E0001, "this line ends with `DO`, not with a colon", here)
         .helps("write `" + text(begin_, stop_) + " DO`")
         .fix(here, " DO");
     return change(stop_, 1, {{Kinds::DO, here}});
@@ -349,7 +349,7 @@ private:
     if ((roles_of(tokens_[stop_].kind) & role::opens) == 0 || stop_ + 1 != end_)
       return std::nullopt;
     const Span here = tokens_[stop_].span;
-    report(Code::E0009, "END does not say what it ends", here).fix(here, "");
+    report(Code::E0009, "`END` stands alone: it does not name what it ends", here).fix(here, "");
     return change(stop_, 1);
   }
 
@@ -374,14 +374,12 @@ private:
       if (!word || at == 0 || !asks(tokens_[at - 1].kind)) continue;
       const bool rule = is(at - 1, Kinds::WHEN) || is(at - 1, Kinds::WHILE);
       Diagnostic& message = report(
-          Code::E0302,
-          quote(at) + " asks nothing: a condition looks at a sensor or at what is remembered",
+          Code::E0302, quote(at) + " is not a condition: a condition checks a sensor or a variable",
           tokens_[at].span);
       if (rule)
-        message.helps(
-            "what is done again and again is `EVERY 1s DO`; what is done once, `AT START DO`");
+        message.helps("to act again and again, write `EVERY 1s DO`; to act once, `AT START DO`");
       else
-        message.helps("write for instance `touch LEVEL > 3`, or leave the condition out");
+        message.helps("write a condition such as `touch LEVEL > 3`, or leave it out");
       return change(
           at, 1,
           {missing(Kinds::QUANTITY, at), missing(Kinds::LESS, at), missing(Kinds::QUANTITY, at)});

@@ -48,17 +48,17 @@ void report_decimal_comma(Diagnostics& diagnostics, Span place, std::string_view
   const std::string fraction = std::string(whole) + "." + std::string(decimals);
   const std::string thousand = std::string(whole) + std::string(decimals);
   if (!may_be_thousand) {
-    diagnostics.report(Code::E0004, "a number has a point in front of its decimals, not a comma")
+    diagnostics.report(Code::E0004, "decimals follow a point, not a comma")
         .label(place, "write `" + fraction + "`")
         .fix(place, fraction, Applicability::likely);
     return;
   }
-  Diagnostic& message = diagnostics.report(Code::E0004, "a number has no comma in it")
+  Diagnostic& message = diagnostics.report(Code::E0004, "a number contains no comma")
                             .label(place, "write `" + thousand + "`");
   if (decimals.substr(0, digits) == "000")
     message.fix(place, thousand, Applicability::likely);
   else
-    message.helps("or, if these are its decimals, `" + fraction + "`");
+    message.helps("or, if these are decimals, `" + fraction + "`");
 }
 
 }  // namespace robosync::compiler

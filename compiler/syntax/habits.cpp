@@ -72,7 +72,7 @@ private:
     if (!item && !first) return std::nullopt;
     if (first) return kept_too_early(stop_);
     report(Code::E0010, "only a REMEMBER can be KEPT", tokens_[stop_].span)
-        .helps("what is kept is a number: `REMEMBER visits = 0 KEPT`");
+        .helps("`KEPT` keeps a number: `REMEMBER visits = 0 KEPT`");
     return change(stop_, 1);
   }
 
@@ -83,14 +83,13 @@ private:
     }
     if (!is(stop_, Kinds::KEPT) || has(statement_, stop_, Kinds::EQUAL)) return std::nullopt;
     const std::string name(text(stop_ - 1));
-    report(Code::E0008, "this does not say what `" + name + "` begins with",
-           tokens_[stop_ - 1].span)
-        .helps("write the number in front of KEPT: `REMEMBER " + name + " = 0 KEPT`");
+    report(Code::E0008, "`" + name + "` has no starting value", tokens_[stop_ - 1].span)
+        .helps("write the number before `KEPT`: `REMEMBER " + name + " = 0 KEPT`");
     return change(stop_, 0, {missing(Kinds::EQUAL, stop_), missing(Kinds::QUANTITY, stop_)});
   }
 
   Edit kept_too_early(std::size_t at) {
-    report(Code::E0001, "KEPT stands at the end of its line", tokens_[at].span)
+    report(Code::E0001, "`KEPT` goes at the end of the line", tokens_[at].span)
         .helps("write `REMEMBER visits = 0 KEPT`");
     return change(at, 1);
   }
@@ -102,9 +101,12 @@ private:
     if (!is(stop_ - 1, holds ? Kinds::EQUAL : Kinds::TO)) return std::nullopt;
     if (!holds && is_word_of_state(stop_ - 2, stop_)) return word_in_quotes();
     const std::string what = holds ? "a " + std::string(text(statement_)) + " holds" : "SET takes";
-    report(Code::E0306, what + " a number, and this is a text", tokens_[stop_].span)
-        .helps("texts to choose from are a LIST: `LIST words: " + std::string(text(stop_)) + "`")
-        .helps("one of several words is a STATE: `STATE mood: calm, happy`, `SET mood TO happy`");
+    report(Code::E0306, what + " a number, but this is text", tokens_[stop_].span)
+        .helps("for texts to choose from, use a LIST: `LIST words: " + std::string(text(stop_)) +
+               "`")
+        .helps(
+            "for one of several words, use a STATE: `STATE mood: calm, happy`, `SET mood TO "
+            "happy`");
     return change(stop_, 1, {missing(Kinds::QUANTITY, stop_)});
   }
 
@@ -126,7 +128,7 @@ private:
   // `SET mood TO "happy"`
   Edit word_in_quotes() {
     Span word = tokens_[stop_].span;
-    report(Code::E0306, "a word of a STATE stands without quotes behind SET", word)
+    report(Code::E0306, "`SET` takes a word of a STATE without quotes", word)
         .helps("write `" + std::string(text(stop_).substr(1, text(stop_).size() - 2)) + "`")
         .fix(word, std::string(text(stop_).substr(1, text(stop_).size() - 2)));
     ++word.begin;
@@ -144,9 +146,10 @@ private:
     const std::string name(text(statement_ + 1));
     const std::string what = holds ? "a " + std::string(text(statement_)) + " holds a number"
                                    : std::string("SET takes a number or a word of a STATE");
-    report(Code::E0306, what + ", and " + quote(stop_) + " is none", tokens_[stop_].span)
-        .helps("write 1 for true and 0 for false, and ask `" + name + " = 1`")
-        .helps("one of several words is a STATE: `STATE mood: asleep, awake`, `mood IS awake`")
+    report(Code::E0306, what + ", not " + quote(stop_), tokens_[stop_].span)
+        .helps("write 1 for true and 0 for false, and check with `" + name + " = 1`")
+        .helps(
+            "for one of several words, use a STATE: `STATE mood: asleep, awake`, `mood IS awake`")
         .fix(tokens_[stop_].span, number, Applicability::likely);
     return change(stop_, 1, {missing(Kinds::QUANTITY, stop_)});
   }
@@ -155,7 +158,7 @@ private:
   std::optional<Edit> list() {
     if (stop_ == begin_ && is_name(stop_, "LIST") && is(stop_ + 1, Kinds::NAME)) {
       const std::string name(text(stop_ + 1));
-      report(Code::E0001, "a LIST has a colon behind its name", span(stop_, stop_ + 2))
+      report(Code::E0001, "a LIST has a colon after its name", span(stop_, stop_ + 2))
           .helps("write `LIST " + name + ": \"one\", \"two\"`");
       return change(begin_, tokens_.size() - begin_);
     }
@@ -164,9 +167,10 @@ private:
     const bool next_line = stop_ == begin_ && begin_ > 0;
     const bool sign = is(stop_ - 1, Kinds::MINUS) || is(stop_, Kinds::MINUS);
     if (!text_in_brackets && !next_line && !sign) return std::nullopt;
-    report(Code::E0001,
-           text_in_brackets ? "a LIST has no brackets" : "the parts of a LIST have commas between",
-           tokens_[text_in_brackets ? stop_ - 1 : stop_].span)
+    report(
+        Code::E0001,
+        text_in_brackets ? "a LIST has no brackets" : "the items of a LIST are separated by commas",
+        tokens_[text_in_brackets ? stop_ - 1 : stop_].span)
         .helps("write `LIST " + std::string(text(1)) + ": \"one\", \"two\"`, without END");
     const std::size_t rest = rest_of_list();
     if (!text_in_brackets && !sign) return change(stop_, rest - stop_);
@@ -190,20 +194,20 @@ private:
     if (is(before_, Kinds::RANDOM) && begins_with(Kinds::NAME)) return std::nullopt;
     if (is(stop_, Kinds::RANDOM) && is(stop_ + 1, Kinds::NAME)) {
       const std::string better = "ANY " + std::string(text(stop_ + 1));
-      report(Code::E0001, "RANDOM draws a number: `RANDOM(1, 6)`", tokens_[stop_].span)
-          .helps("a text of a LIST at random is `" + better + "`");
+      report(Code::E0001, "`RANDOM` picks a number: `RANDOM(1, 6)`", tokens_[stop_].span)
+          .helps("for a random text from a LIST, write `" + better + "`");
       return change(stop_, 1, {{Kinds::NAME, tokens_[stop_].span}});
     }
     if (!is(stop_, Kinds::OF) || stop_ == 0 || !is(stop_ + 1, Kinds::NAME)) return std::nullopt;
     const std::string list(text(stop_ + 1));
     if (is_any_name(stop_ - 1, {"ANY", "NEXT"})) {
       const std::string word(text(stop_ - 1));
-      report(Code::E0009, quote(stop_ - 1) + " has no OF behind it", tokens_[stop_].span)
+      report(Code::E0009, quote(stop_ - 1) + " takes no `OF`", tokens_[stop_].span)
           .helps("write `" + word + " " + list + "`");
       return change(stop_, 1);
     }
     if (!is_any_name(stop_ - 1, {"LENGTH", "LEN", "SIZE", "NUMBER"})) return std::nullopt;
-    report(Code::E0001, "how many a LIST has is its COUNT", span(stop_ - 1, stop_ + 2))
+    report(Code::E0001, "the length of a LIST is its `COUNT`", span(stop_ - 1, stop_ + 2))
         .helps("write `COUNT OF " + list + "`");
     return change(stop_ - 1, 3, {missing(Kinds::QUANTITY, stop_)});
   }
@@ -211,16 +215,16 @@ private:
   // `TIMER idle = 0s`, `START idle`
   std::optional<Edit> timer() {
     if (begins_with(Kinds::TIMER) && is(statement_ + 1, Kinds::NAME) && stop_ == statement_ + 2) {
-      report(Code::E0009, "a TIMER begins at 0 by itself, and has nothing behind its name",
+      report(Code::E0009, "a TIMER starts at 0 on its own: nothing follows its name",
              span(stop_, end_))
           .helps("write `TIMER " + std::string(text(statement_ + 1)) + "`");
       return change(stop_, end_ - stop_);
     }
     if (stop_ != statement_ || !is(stop_, Kinds::START) || !is(stop_ + 1, Kinds::NAME))
       return std::nullopt;
-    report(Code::E0001, "START begins nothing here", tokens_[stop_].span)
-        .helps("a TIMER begins again with `RESTART " + std::string(text(stop_ + 1)) + "`")
-        .helps("a MOTION begins with `PERFORM " + std::string(text(stop_ + 1)) + "`");
+    report(Code::E0001, "`START` starts nothing here", tokens_[stop_].span)
+        .helps("to start a TIMER again, write `RESTART " + std::string(text(stop_ + 1)) + "`")
+        .helps("to start a MOTION, write `PERFORM " + std::string(text(stop_ + 1)) + "`");
     return change(stop_, 1);
   }
 
@@ -230,7 +234,7 @@ private:
     if (is(stop_, Kinds::END) || is(stop_, Kinds::NEWLINE) || before_ == stop_) return std::nullopt;
     if (is_operator(tokens_[stop_].kind) && is(begin_, Kinds::AT)) {
       const std::string better = "`(" + text(stop_ - 1, std::min(stop_ + 2, end_)) + ")`";
-      report(Code::E0001, "a value that is worked out stands in brackets here",
+      report(Code::E0001, "a calculated value needs brackets here",
              span(stop_ - 1, std::min(stop_ + 2, end_)))
           .helps("write " + better);
       return rows_dropped();
@@ -243,7 +247,7 @@ private:
     if (!foreign && !without_at && !command) return std::nullopt;
     report(Code::E0001, "a row of a MOTION is a time and a value for each actuator",
            tokens_[stop_].span)
-        .helps("with spaces between: `AT 0s 10deg 20deg`; `-` where an actuator is on its way");
+        .helps("separated by spaces: `AT 0s 10deg 20deg`; `-` for an actuator still on its way");
     return rows_dropped();
   }
 
@@ -257,7 +261,7 @@ private:
         (word == begin_ + 2 && !is(begin_ + 1, Kinds::QUANTITY)))
       return std::nullopt;
     const std::string better = std::string(text(word)) + " " + text(begin_, word);
-    report(Code::E0001, "in a line of a CHECK the word stands first", span(begin_, end_))
+    report(Code::E0001, "in a line of a CHECK, the word comes first", span(begin_, end_))
         .helps("write `" + better + "`")
         .fix(span(begin_, end_), better, Applicability::likely);
     Tokens turned{tokens_[word], tokens_[begin_]};
@@ -268,7 +272,7 @@ private:
   // `MOTION wave OF left_arm AND right_arm`
   std::optional<Edit> columns() {
     if (!is(0, Kinds::MOTION) || !is(stop_, Kinds::AND)) return std::nullopt;
-    report(Code::E0001, "the actuators of a MOTION have commas between them", tokens_[stop_].span)
+    report(Code::E0001, "the actuators of a MOTION are separated by commas", tokens_[stop_].span)
         .helps("write `" + text(stop_ - 1, stop_) + ", " + text(stop_ + 1, stop_ + 2) + "`")
         .fix(tokens_[stop_].span, ",", Applicability::likely);
     return change(stop_, 1, {{Kinds::COMMA, tokens_[stop_].span}});
@@ -289,7 +293,7 @@ private:
   std::optional<Edit> else_if() {
     if (statement_ > 0 && is(statement_ - 1, Kinds::ELSE) && is_relation(tokens_[stop_].kind) &&
         has(stop_, end_, Kinds::DO)) {
-      report(Code::E0001, "ELSE asks nothing; to ask once more, write `ELSE IF`",
+      report(Code::E0001, "`ELSE` takes no condition; for another condition, write `ELSE IF`",
              tokens_[statement_ - 1].span);
       return change(statement_ - 1, 1, {{Kinds::ELSE_IF, tokens_[statement_ - 1].span}});
     }
@@ -328,12 +332,12 @@ private:
     const bool relation = is_relation(tokens_[stop_].kind);
     if (!relation && !is(stop_, Kinds::QUANTITY)) return std::nullopt;
     if (relation) {
-      report(Code::E0009, "no IS stands in front of " + quote(stop_), tokens_[stop_ - 1].span);
+      report(Code::E0009, quote(stop_) + " takes no `IS` before it", tokens_[stop_ - 1].span);
       return change(stop_ - 1, 1);
     }
-    report(Code::E0001, "IS asks for a word, and " + quote(stop_) + " is a number",
+    report(Code::E0001, "`IS` compares words, but " + quote(stop_) + " is a number",
            tokens_[stop_ - 1].span)
-        .helps("a number is compared with `=`, `<` or `>`, or with `IS BETWEEN 2 AND 5`");
+        .helps("to compare numbers, use `=`, `<`, `>` or `IS BETWEEN 2 AND 5`");
     return change(stop_ - 1, 1, {{Kinds::EQUAL, tokens_[stop_ - 1].span}});
   }
 
@@ -356,10 +360,10 @@ private:
     if (!is(sign, Kinds::IS) || first == sign) return std::nullopt;
     const std::string question = text(first, word);
     Diagnostic& message =
-        report(Code::E0001, "what stands behind " + quote(stop_ - 1) + " asks nothing by itself",
+        report(Code::E0001, "what follows " + quote(stop_ - 1) + " is not a condition on its own",
                tokens_[stop_].span);
-    message.helps("say again what is asked: `" + question + " " + std::string(text(word)) + " " +
-                  std::string(negated ? "AND" : text(stop_ - 1)) + " " + question + " " +
+    message.helps("write both conditions in full: `" + question + " " + std::string(text(word)) +
+                  " " + std::string(negated ? "AND" : text(stop_ - 1)) + " " + question + " " +
                   std::string(text(stop_)) + "`");
     Span front = tokens_[stop_].span;
     front.end = front.begin;
@@ -385,8 +389,7 @@ private:
       const bool next = is(at, Kinds::OR) || is(at, Kinds::COMMA);
       better += " " + (next ? (negated ? "AND " : "OR ") + question : std::string(text(at)));
     }
-    report(Code::E0001, "IS asks for one word, and no brackets stand behind it",
-           span(stop_, close + 1))
+    report(Code::E0001, "`IS` takes one word, without brackets", span(stop_, close + 1))
         .helps("write `" + better + "`")
         .fix(span(first, close + 1), negated ? better : "(" + better + ")", Applicability::likely);
     return change(stop_, close + 1 - stop_, {tokens_[stop_ + 1]});
@@ -398,17 +401,17 @@ private:
     const std::size_t first = begin_ + 1;
     const Span here = tokens_[first].span;
     if (is(first, Kinds::NOT)) {
-      report(Code::E0001, "what must not happen is EXPECTed with NO", here)
+      report(Code::E0001, "`EXPECT` takes `NO`, not `NOT`", here)
           .fix(here, "NO", Applicability::likely);
       return change(first, 1, {{Kinds::NO, here}});
     }
     if (is(first, Kinds::STOP)) {
-      report(Code::E0001, "a TEST asks whether an actuator was STOPPED", here)
+      report(Code::E0001, "a TEST checks that an actuator was `STOPPED`", here)
           .helps("write `EXPECT STOPPED " + std::string(text(first + 1)) + "`");
       return change(first, 1, {{Kinds::NAME, here}});
     }
     if (is(first, Kinds::NOTHING) && !has(first, end_, Kinds::FOR)) {
-      report(Code::E0008, "this does not say for how long nothing may happen", here)
+      report(Code::E0008, "this does not say how long nothing may happen", here)
           .helps("write `EXPECT NOTHING FOR 2s`");
       return change(first + 1, end_ - first - 1,
                     {missing(Kinds::FOR, first), missing(Kinds::QUANTITY, first)});
@@ -420,7 +423,7 @@ private:
     const bool says = is(first, Kinds::LOG) || is(first, Kinds::ALERT);
     if (says && is(first + 1, Kinds::NAME) && stop_ <= first + 1) {
       const std::string word(text(first));
-      report(Code::E0001, "the text of " + word + " stands in quotes", tokens_[first + 1].span)
+      report(Code::E0001, "the text of " + word + " goes in quotes", tokens_[first + 1].span)
           .helps("write `EXPECT " + word + " \"…\"`");
       return change(first + 1, 1, {{Kinds::STRING, tokens_[first + 1].span}});
     }
@@ -433,7 +436,7 @@ private:
     }
     const bool counts = is(first, Kinds::QUANTITY) && is(first + 1, Kinds::TIMES);
     if (!counts || stop_ < end_ || has(first, end_, Kinds::WITHIN)) return std::nullopt;
-    report(Code::E0008, "this does not say in how long the commands are counted",
+    report(Code::E0008, "this does not say within what time to count the commands",
            span(first, first + 2))
         .helps("write `" + text(begin_, end_) + " WITHIN 2s`");
     return change(end_, 0, {missing(Kinds::WITHIN, end_), missing(Kinds::QUANTITY, end_)});
@@ -450,8 +453,8 @@ private:
     const bool few = is(stop_, Kinds::CLOSE) && stop_ == close && !comma;
     const bool many = is(stop_, Kinds::COMMA) && comma && close < end_;
     if (!few && !many) return std::nullopt;
-    report(Code::E0411, "`RANDOM` wants two numbers", tokens_[open - 1].span)
-        .helps("it draws one from the first to the second: `RANDOM(1, 6)`");
+    report(Code::E0411, "`RANDOM` takes two numbers", tokens_[open - 1].span)
+        .helps("it picks a number from the first to the second: `RANDOM(1, 6)`");
     if (many) return change(stop_, close - stop_);
     Tokens lacking;
     if (stop_ == open + 1) lacking.push_back(missing(Kinds::QUANTITY, stop_));
@@ -468,7 +471,7 @@ private:
     const std::size_t name = stop_ - 2;
     if (stop_ >= 2 && known(name) && is(stop_ - 1, Kinds::NAME) && is(stop_, Kinds::NAME)) {
       const std::string word(text(name));
-      report(Code::E0001, "`" + word + "` has its number in brackets", tokens_[name].span)
+      report(Code::E0001, "`" + word + "` takes its number in brackets", tokens_[name].span)
           .helps("write `" + word + "(" + text(stop_ - 1, stop_ + 1) + ")`");
       return change(name, 1);
     }
@@ -484,7 +487,7 @@ private:
     if (!is(stop_, Kinds::COMMA) && stop_ != open + 1) return std::nullopt;
     if (is(stop_, Kinds::COMMA) && !has(open, stop_, Kinds::COMMA)) return std::nullopt;
     if (stop_ == open + 1 && !is(stop_, Kinds::CLOSE)) return std::nullopt;
-    report(Code::E0411, "`" + word + "` wants " + (pair ? "two numbers" : "one number"),
+    report(Code::E0411, "`" + word + "` takes " + (pair ? "two numbers" : "one number"),
            tokens_[open - 1].span)
         .helps(help);
     if (stop_ == open + 1) return change(stop_, 0, {missing(Kinds::QUANTITY, stop_)});
@@ -497,7 +500,7 @@ private:
       const std::size_t close = closing(stop_);
       const std::string names = text(stop_ + 1, close);
       const std::string better = names.empty() ? "" : " WITH " + names;
-      report(Code::E0001, "what a DEFINE is given stands behind WITH, without brackets",
+      report(Code::E0001, "a DEFINE lists its values after `WITH`, without brackets",
              tokens_[stop_].span)
           .helps("write `DEFINE " + std::string(text(stop_ - 1)) + better + "`");
       return bare(close);
@@ -506,7 +509,7 @@ private:
     if (open >= end_ || !is_call(open) || stop_ <= open) return std::nullopt;
     const std::size_t close = closing(open);
     const std::string values = text(open + 1, close);
-    report(Code::E0001, "a DEFINE is given its values behind WITH, without brackets",
+    report(Code::E0001, "a DEFINE gets its values after `WITH`, without brackets",
            tokens_[open].span)
         .helps("write `" + std::string(text(statement_)) +
                (values.empty() ? "`" : " WITH " + values + "`"));
@@ -544,15 +547,15 @@ private:
     const std::string number = text(first, end);
     const std::string brackets = "(" + number + ")";
     if (behind_preposition) {
-      report(Code::E0505, "a value that is worked out stands in brackets here", span(first, end))
+      report(Code::E0505, "a calculated value needs brackets here", span(first, end))
           .helps("write `" + brackets + "`");
     } else if (is_name(statement_, "SAY")) {
-      report(Code::E0505, "a text begins with words in quotes, and this is a number",
+      report(Code::E0505, "text begins with words in quotes, but this is a number",
              span(first, end))
           .helps("write the words, a comma and the number: `SAY \"…\", " + number + "`");
     } else {
-      report(Code::E0008, "this does not say what the number is", span(first, end))
-          .helps("write TO, BY, AT, OVER or FOR and brackets, such as `TO " + brackets + "`");
+      report(Code::E0008, "this does not say what the number is for", span(first, end))
+          .helps("put it in brackets after TO, BY, AT, OVER or FOR, such as `TO " + brackets + "`");
     }
     return change(first, end - first,
                   behind_preposition ? Tokens{missing(Kinds::QUANTITY, first)} : Tokens{});
@@ -595,8 +598,8 @@ private:
     while (last + 1 < tokens_.size() && is_stray(last + 1))
       last = end_of_line(last + 1);
     if (is(last + 1, Kinds::END)) return std::nullopt;  // of a block whose head is missing
-    report(Code::E0001, "no line begins with " + quote(begin_) + " here", tokens_[begin_].span)
-        .helps("commands stand in a rule or in a DEFINE: `WHEN ... DO ... END`");
+    report(Code::E0001, "a line cannot begin with " + quote(begin_) + " here", tokens_[begin_].span)
+        .helps("commands belong in a rule or a DEFINE: `WHEN ... DO ... END`");
     return change(begin_, last - begin_);
   }
 

@@ -24,9 +24,9 @@ bool is_misplaced(TokenKind kind) {
 void report(const Token& token, const SourceFile& source, Diagnostics& diagnostics) {
   diagnostics
       .report(Code::E0010, "`" + std::string(source.text(token.span)) +
-                               "` cannot stand in the first line of a BEHAVIOR")
+                               "` does not belong in the first line of a BEHAVIOR")
       .label(token.span)
-      .helps("the line is `BEHAVIOR name PRIORITY 50`; its rules follow, and then `END`");
+      .helps("write `BEHAVIOR name PRIORITY 50`, then its rules, then `END`");
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ bool LexerState::foreign_end() {
   if (std::ranges::none_of(ends,
                            [this](std::string_view end) { return ascii::same(end, lexeme()); }))
     return false;
-  report(Code::E0007, "every block of RSL ends with END").label(here()).fix(here(), "END");
+  report(Code::E0007, "every block of RSL ends with `END`").label(here()).fix(here(), "END");
   token(Kinds::END);
   return true;
 }
@@ -212,7 +212,7 @@ bool LexerState::foreign_loop() {
     message.fix(here(), "REPEAT");
     return true;
   }
-  message.helps("write `REPEAT 3 TIMES`; what is counted meanwhile is a REMEMBER");
+  message.helps("write `REPEAT 3 TIMES`; to count along, use a REMEMBER");
   cursor_ = line_end;
   tokens_.push_back({Kinds::QUANTITY, span(cursor_, cursor_)});
   tokens_.push_back({Kinds::TIMES, span(cursor_, cursor_)});
@@ -237,7 +237,7 @@ bool LexerState::apostrophe_in_number() {
   const Span all = span(tokens_.back().span.begin, cursor_);
   std::string better(text_.substr(all.begin, all.end - all.begin));
   std::erase(better, '\'');
-  report(Code::E0004, "a number has no ' between its digits")
+  report(Code::E0004, "a number contains no '")
       .label(all, "write `" + better + "`")
       .fix(all, better, Applicability::likely);
   return true;
@@ -260,9 +260,9 @@ bool LexerState::apostrophe_in_text() {
   if (end == last || is_line_end(end)) return false;
   const std::string inside(text_.substr(start_ + 1, end - start_ - 1));
   cursor_ = end + 1;
-  Diagnostic& message = report(Code::E0003, "a text between two ' has no ' in it")
+  Diagnostic& message = report(Code::E0003, "text between two ' cannot contain a '")
                             .label(here())
-                            .helps("a text with a ' in it stands between two \"");
+                            .helps("put text that contains a ' between two \"");
   if (inside.find('"') == std::string::npos)
     message.fix(here(), "\"" + inside + "\"", Applicability::likely);
   token(Kinds::STRING);
@@ -286,10 +286,10 @@ bool LexerState::modulo() {
   const bool sure =
       (brackets_open() || compares || last == "END" || last == "DO") && !next_line_has_sign();
   Diagnostic& message =
-      sure ? report(Code::E0001, "`%` begins a comment in RSL, and does not calculate")
-           : report(Code::W0103, "from here on this line is a comment, and nothing is calculated");
-  message.label(sign).helps("what is left of a division is worked out with MOD, such as `n MOD 2`");
-  if (!sure) message.helps("for a comment, write # in the place of %");
+      sure ? report(Code::E0001, "`%` begins a comment in RSL; it does not calculate")
+           : report(Code::W0103, "the rest of this line is a comment: nothing is calculated");
+  message.label(sign).helps("for the remainder of a division, use `MOD`, such as `n MOD 2`");
+  if (!sure) message.helps("for a comment, write # instead of %");
   message.fix(sign, better, Applicability::likely);
   if (!sure) return true;
   cursor_ = sign.end;
@@ -308,9 +308,9 @@ bool LexerState::percent_of_question() {
   const Span number = tokens_.back().span;
   const std::string better =
       std::string(text_.substr(number.begin, number.end - number.begin)) + "%";
-  report(Code::E0004, "no space stands between a number and its unit")
+  report(Code::E0004, "a unit follows its number without a space")
       .label(span(number.begin, start_ + 1))
-      .helps("write `" + better + "`; behind a space, `%` begins a comment")
+      .helps("write `" + better + "`; after a space, `%` begins a comment")
       .fix(span(number.begin, start_ + 1), better, Applicability::likely);
   cursor_ = start_ + 1;
   return true;
@@ -330,7 +330,7 @@ void LexerState::whole_division() {
   Diagnostic& message =
       report(Code::E0002, "`//` does not divide in RSL")
           .label(span(start_, start_ + 2))
-          .helps("`/` divides, and keeps three decimals; rounded down it is `" + better + "`");
+          .helps("`/` divides and keeps three decimals; to round down, write `" + better + "`");
   if (plain) message.fix(span(left.begin, cursor_), better, Applicability::likely);
   cursor_ = start_ + 2;
   token(Kinds::SLASH);
@@ -360,10 +360,9 @@ LexerState::Brace LexerState::brace_opens_a_block() {
 
 void LexerState::opening_brace() {
   if (!has_brace_)
-    report(Code::E0002, "RSL has no braces: a block ends with END")
+    report(Code::E0002, "RSL has no braces: a block ends with `END`")
         .label(here())
-        .helps(
-            "what is asked ends with DO: `WHEN touch LEVEL > 3 DO`, and then the lines, and `END`");
+        .helps("write `WHEN touch LEVEL > 3 DO`, then the commands, then `END`");
   has_brace_ = true;
   braces_.push_back(brace_opens_a_block());
 }
@@ -372,7 +371,7 @@ void LexerState::opening_brace() {
 void LexerState::closing_brace() {
   if (braces_.empty()) {
     if (brace_is_end()) return;
-    left_out("a block ends with END");
+    left_out("a block ends with `END`");
     return;
   }
   const Brace brace = braces_.back();
@@ -393,7 +392,7 @@ bool LexerState::brace_is_end() {
   for (std::size_t at = 0; at < tokens_.size(); ++at)
     walk.step(at);
   if (walk.open().empty()) return false;
-  report(Code::E0002, "RSL has no braces: a block ends with END")
+  report(Code::E0002, "RSL has no braces: a block ends with `END`")
       .label(here())
       .fix(here(), "END", Applicability::likely);
   token(Kinds::END);
@@ -426,7 +425,7 @@ void LexerState::foreign_comment() {
   }
   const bool only_words =
       !behind_value() || words.find_first_of("0123456789+*/()=<>") == std::string_view::npos;
-  report(Code::E0002, "a comment of RSL begins with # or %, not with `" +
+  report(Code::E0002, "a comment in RSL begins with # or %, not with `" +
                           std::string(lexeme().substr(0, shown)) + "`")
       .label(span(start_, start_ + shown))
       .fix(span(start_, start_ + shown), "#",
@@ -437,9 +436,9 @@ void LexerState::foreign_comment() {
 void LexerState::long_comment() {
   const std::size_t end = text_.find("*/", cursor_);
   cursor_ = end == std::string_view::npos ? text_.size() : end + 2;
-  report(Code::E0002, "a comment of RSL begins with # or % and goes to the end of its line")
-      .label(span(start_, start_ + 2), "this one is left out up to its end")
-      .helps("write # in front of each of its lines");
+  report(Code::E0002, "a comment in RSL begins with # or % and ends with its line")
+      .label(span(start_, start_ + 2), "rsc ignores this one up to its end")
+      .helps("write # at the start of each line");
 }
 
 }  // namespace robosync::compiler

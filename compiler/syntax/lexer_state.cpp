@@ -260,7 +260,7 @@ void LexerState::open_string() {
   leave_end_to_its_block();
   const std::string quote(lexeme().substr(0, 1));
   report(Code::E0003, "this text is not closed")
-      .label(here(), "it ends with its line, without a " + quote)
+      .label(here(), "the line ends without a " + quote)
       .helps("write " + quote + " at the end of the text")
       .fix(span(cursor_, cursor_), quote);
   token(Kinds::STRING);
@@ -274,10 +274,10 @@ void LexerState::comment() {
   const std::string_view number = text_.substr(last.span.begin, last.span.end - last.span.begin);
   const char end = number.empty() ? '\0' : number.back();
   if (end < '0' || end > '9' || percent_of_question()) return;
-  report(Code::W0103, "from here on this line is a comment, not a percentage")
+  report(Code::W0103, "the rest of this line is a comment, not a percentage")
       .label(span(start_, start_ + 1))
       .helps("for the percentage, write `" + std::string(number) + "%` without a space")
-      .helps("for a comment, write # in the place of %")
+      .helps("for a comment, write # instead of %")
       .fix(span(last.span.end, start_ + 1), "%", Applicability::likely);
 }
 
@@ -334,7 +334,7 @@ bool LexerState::dotted() {
   const std::string_view behind = text_.substr(cursor_, word_length(text_.substr(cursor_)));
   if (std::ranges::none_of(sounds,
                            [behind](std::string_view one) { return ascii::same(one, behind); })) {
-    report(Code::E0002, "words of RSL have a space between them, no point")
+    report(Code::E0002, "words of RSL are separated by a space, not a point")
         .label(here())
         .helps("write a space, as in `touch LEVEL` or `SAY voice`")
         .fix(here(), " ", Applicability::likely);
@@ -344,7 +344,7 @@ bool LexerState::dotted() {
   cursor_ += behind.size();
   tokens_.pop_back();
   const std::string quoted = "\"" + std::string(lexeme()) + "\"";
-  report(Code::E0002, "the name of a file stands in quotes")
+  report(Code::E0002, "the name of a file goes in quotes")
       .label(here())
       .fix(here(), quoted, Applicability::likely);
   token(Kinds::STRING);
@@ -365,8 +365,7 @@ void LexerState::strange(std::size_t size) {
   if (text_[start_] == '^') message.helps("RSL has no powers: multiply, such as `n * n`");
   if (text_[start_] == '[' || text_[start_] == ']')
     message.helps(
-        "a LIST stands without brackets, `LIST words: \"one\", \"two\"`; one of it is `ITEM 1 OF "
-        "words`");
+        "a LIST has no brackets: `LIST words: \"one\", \"two\"`; one item is `ITEM 1 OF words`");
 }
 
 void LexerState::other() {

@@ -24,7 +24,7 @@ bool is_plain_statement(TokenKind kind) {
   return (roles_of(kind) & role::statement) != 0 && (roles_of(kind) & role::opens) == 0;
 }
 
-constexpr const char* kOwnLine = "write each command on a line of its own: they begin together";
+constexpr const char* kOwnLine = "write each command on its own line: they start together";
 
 class MisplacedWords : private MistakenLine {
 public:
@@ -68,8 +68,7 @@ private:
     const Span name = tokens_[1].span;
     Diagnostic& message =
         report(Code::E0008, "`WHEN` is missing after " + quote(1), {name.file, name.end, name.end});
-    message.helps(
-        "a SAFETY rule asks first and acts then: `WHEN` and a condition, `DO`, `STOP ALL`, `END`");
+    message.helps("a SAFETY rule is `WHEN` and a condition, then `DO`, `STOP ALL` and `END`");
     return change(0, tokens_.size());
   }
 
@@ -85,7 +84,7 @@ private:
     Span gap = tokens_[stop_ - 2].span;
     gap.begin = gap.end;
     gap.end = tokens_[stop_ - 1].span.begin;
-    report(Code::E0505, "no space stands between a number and its unit", span(stop_ - 2, stop_ + 2))
+    report(Code::E0505, "a unit follows its number without a space", span(stop_ - 2, stop_ + 2))
         .helps("write `" + std::string(text(stop_ - 2)) + text(stop_ - 1, stop_ + 2) + "`")
         .fix(gap, "", Applicability::likely);
     return change(stop_ - 2, 4, {missing(Kinds::QUANTITY, stop_ - 2)});
@@ -98,15 +97,15 @@ private:
     const Span words = span(stop_ - 2, stop_);
     const std::string what = "`" + std::string(source_.text(words)) + "`";
     if (is(stop_, Kinds::QUANTITY)) {
-      report(Code::E0001, what + " asks for a word, and " + quote(stop_) + " is a number", words)
-          .helps("a number that is another one is asked for with `<>`")
+      report(Code::E0001, what + " compares words, but " + quote(stop_) + " is a number", words)
+          .helps("to compare numbers, use `<>`")
           .fix(words, "<>", Applicability::likely);
       return change(stop_ - 2, 2, {{Kinds::NOT_EQUAL, words}});
     }
     for (const Opposite& one : kOpposites) {
       if (!is(stop_, one.relation)) continue;
       const Span all = span(stop_ - 2, stop_ + 1);
-      report(Code::E0001, "no " + what + " stands in front of " + quote(stop_), all)
+      report(Code::E0001, quote(stop_) + " takes no " + what + " before it", all)
           .helps("the opposite of " + quote(stop_) + " is `" + std::string(one.spelling) + "`")
           .fix(all, std::string(one.spelling), Applicability::likely);
       return change(stop_ - 2, 3, {{one.kind, all}});
@@ -117,16 +116,15 @@ private:
   // `touch LEVEL NOT > 4`, `mood BECOMES NOT happy`, `x IS NOT BETWEEN 1 AND 2`
   std::optional<Edit> negation() {
     if (is(stop_, Kinds::BETWEEN) && stop_ > 1 && is(stop_ - 1, Kinds::NOT)) {
-      report(Code::E0001, "NOT stands in front of the whole condition here",
-             tokens_[stop_ - 1].span)
+      report(Code::E0001, "`NOT` goes before the whole condition here", tokens_[stop_ - 1].span)
           .helps("write `NOT x IS BETWEEN 2 AND 5`");
       return change(stop_ - 1, 1);
     }
     if (!is(stop_, Kinds::NOT) || stop_ == begin_) return std::nullopt;
     if (is(stop_ - 1, Kinds::BECOMES)) {
       const Span both = span(stop_ - 1, stop_ + 1);
-      report(Code::E0001, "BECOMES has no NOT behind it", tokens_[stop_].span)
-          .helps("what is no longer so is asked with `IS NOT`")
+      report(Code::E0001, "`BECOMES` takes no `NOT`", tokens_[stop_].span)
+          .helps("for what is no longer so, use `IS NOT`")
           .fix(both, "IS NOT", Applicability::likely);
       return change(stop_ - 1, 2,
                     {{Kinds::IS, tokens_[stop_ - 1].span}, {Kinds::NOT, tokens_[stop_].span}});
@@ -134,7 +132,7 @@ private:
     for (const Opposite& one : kOpposites) {
       if (!is(stop_ + 1, one.relation)) continue;
       const Span both = span(stop_, stop_ + 2);
-      report(Code::E0001, "no NOT stands in front of " + quote(stop_ + 1), both)
+      report(Code::E0001, quote(stop_ + 1) + " takes no `NOT` before it", both)
           .helps("the opposite of " + quote(stop_ + 1) + " is `" + std::string(one.spelling) + "`")
           .fix(both, std::string(one.spelling), Applicability::likely);
       return change(stop_, 2, {{one.kind, both}});
@@ -151,9 +149,9 @@ private:
       walk.step(at);
     if (walk.end_was_idle() || !is_one_of(tokens_[walk.closed()].kind, {Kinds::WHEN, Kinds::IF}))
       return std::nullopt;
-    report(Code::E0010, "no END stands in front of ELSE", tokens_[before_].span)
+    report(Code::E0010, "`ELSE` takes no `END` before it", tokens_[before_].span)
         .label(tokens_[walk.closed()].span, "the block begins here", false)
-        .helps("one END closes both sides: behind what the ELSE does")
+        .helps("one `END`, after the `ELSE` part, closes both")
         .fix(tokens_[before_].span, "", Applicability::likely);
     return change(before_, 1);
   }
@@ -176,10 +174,10 @@ private:
       ++begins;
     if (!is(begins, Kinds::DO) || (asks_first && !has(*block, stop_, Kinds::DO)))
       return std::nullopt;
-    report(Code::E0010, quote(stop_) + " cannot stand inside a response", tokens_[stop_].span)
-        .label(tokens_[*block].span, "the response of this goes on up to its END", false)
-        .helps("rules stand one below the other: close the first with `END` before the next begins")
-        .helps("to ask once while the response runs, write `IF`");
+    report(Code::E0010, quote(stop_) + " cannot be used inside a response", tokens_[stop_].span)
+        .label(tokens_[*block].span, "this block continues until its `END`", false)
+        .helps("rules follow one another: close the first with `END` before the next begins")
+        .helps("to check once while the response runs, write `IF`");
     return change(stop_, begins - stop_,
                   {missing(Kinds::IF, stop_), missing(Kinds::QUANTITY, stop_),
                    missing(Kinds::LESS, stop_), missing(Kinds::QUANTITY, stop_)});
@@ -208,9 +206,9 @@ private:
     while (last + 1 < tokens_.size() && is_step(last + 1))
       last = line_end(last + 1);
     report(Code::E0010,
-           quote(stop_) + " begins a step of a TEST, which stands outside of responses",
+           quote(stop_) + " begins a step of a TEST and cannot be used inside a response",
            tokens_[stop_].span)
-        .label(tokens_[*block].span, "the response of this goes on up to its END", false)
+        .label(tokens_[*block].span, "this block continues until its `END`", false)
         .helps("close it with `END` and write `TEST \"…\"` above the steps");
     return change(stop_, last - stop_, {missing(Kinds::THEN, stop_)});
   }
@@ -221,7 +219,7 @@ private:
       return std::nullopt;
     const auto block = open_block();
     if (block && !is(*block, Kinds::BEHAVIOR)) return std::nullopt;
-    report(Code::E0008, "the line `WHEN` with a condition is missing above this `DO`",
+    report(Code::E0008, "a line with `WHEN` and a condition is missing above this `DO`",
            tokens_[stop_].span)
         .helps("a rule begins with `WHEN`, `WHILE`, `EVERY` or `AT START`");
     return change(stop_, 0,
@@ -237,11 +235,11 @@ private:
     if (!block || is_one_of(tokens_[*block].kind, {Kinds::WHEN, Kinds::IF, Kinds::DEFINE}))
       return std::nullopt;
     Diagnostic& message =
-        report(Code::E0010, "ELSE belongs to a WHEN or an IF, and " + quote(*block) + " has none",
+        report(Code::E0010, "`ELSE` belongs to a WHEN or an IF; " + quote(*block) + " takes none",
                tokens_[stop_].span);
     message.label(tokens_[*block].span, "the block begins here", false);
     if (is(*block, Kinds::WHILE))
-      message.helps("what happens otherwise is a rule of its own, with the opposite condition");
+      message.helps("for what happens otherwise, write another rule with the opposite condition");
     return change(stop_, 1, {missing(Kinds::NEWLINE, stop_)});
   }
 
@@ -256,7 +254,7 @@ private:
     Span place = tokens_[stop_].span;
     place.begin = tokens_[stop_ - 1].span.end;
     if (more) place.end = tokens_[stop_ + 1].span.begin;
-    report(Code::E0001, "THEN stands on a line of its own", tokens_[stop_].span)
+    report(Code::E0001, "`THEN` goes on a line of its own", tokens_[stop_].span)
         .helps("what comes before it is done first, and then what comes after it")
         .fix(place, line + "THEN" + (more ? line : ""), Applicability::likely);
     return change(stop_, 1,
@@ -275,9 +273,9 @@ private:
   // `MOVE head LEFT AND SAY "x"`
   std::optional<Edit> commands_with_and() {
     if (!is(stop_, Kinds::AND) || !is_whole_command()) return std::nullopt;
-    report(Code::E0001, "AND joins conditions, not commands", tokens_[stop_].span)
+    report(Code::E0001, "`AND` joins conditions, not commands", tokens_[stop_].span)
         .helps(kOwnLine)
-        .helps("several actuators that do the same are a group in robot.json");
+        .helps("if several actuators do the same, make them a group in robot.json");
     return change(stop_, end_of_command(stop_) - stop_);
   }
 
@@ -286,7 +284,7 @@ private:
     if (!is_command() || has(statement_, stop_, Kinds::WITH)) return std::nullopt;
     for (std::size_t at = statement_; at < stop_ && !is(at, Kinds::STRING); ++at) {
       if (!is(at, Kinds::COMMA) || !is(at + 1, Kinds::NAME)) continue;
-      report(Code::E0001, "no comma stands between two commands", tokens_[at].span).helps(kOwnLine);
+      report(Code::E0001, "a comma cannot join two commands", tokens_[at].span).helps(kOwnLine);
       return change(at, end_of_command(at) - at);
     }
     return std::nullopt;
@@ -312,8 +310,8 @@ private:
     Span gap = tokens_[stop_ - 1].span;
     gap.begin = gap.end;
     gap.end = tokens_[stop_].span.begin;
-    report(Code::E0001, quote(stop_) + " begins a second command in this line", tokens_[stop_].span)
-        .helps("each command stands on a line of its own")
+    report(Code::E0001, quote(stop_) + " begins a second command on this line", tokens_[stop_].span)
+        .helps("each command goes on a line of its own")
         .fix(gap, "\n", Applicability::likely);
     return change(stop_, end_of_command(stop_) - stop_);
   }
@@ -337,7 +335,7 @@ private:
     gap.begin = gap.end;
     gap.end = tokens_[stop_].span.begin;
     report(Code::E0008, "a comma is missing between the parts of a text", tokens_[stop_].span)
-        .helps("write commas between: `" + std::string(text(statement_)) + " " +
+        .helps("put commas between them: `" + std::string(text(statement_)) + " " +
                text(stop_ - 1, stop_) + ", " + text(stop_, statement_end()) + "`")
         .fix(gap, ", ", Applicability::likely);
     return change(stop_, 0, {missing(Kinds::COMMA, stop_)});
@@ -348,8 +346,8 @@ private:
     if (!is(statement_, Kinds::STOP) || stop_ != statement_ + 2 || !is_behind_statement() ||
         !is_one_of(tokens_[stop_].kind, {Kinds::NAME, Kinds::COMMA, Kinds::AND}))
       return std::nullopt;
-    report(Code::E0001, "one name stands behind STOP", tokens_[stop_].span)
-        .helps("write a STOP for each, on a line of its own, or give them a group in robot.json");
+    report(Code::E0001, "`STOP` takes one name", tokens_[stop_].span)
+        .helps("write a `STOP` for each on a line of its own, or make them a group in robot.json");
     return change(stop_, end_of_command(stop_) - stop_);
   }
 
@@ -372,7 +370,7 @@ private:
     gap.begin = gap.end;
     gap.end = tokens_[at].span.begin;
     Diagnostic& message =
-        report(Code::E0001, "`" + text(at, at + 2) + "` belongs to the end of the line above",
+        report(Code::E0001, "`" + text(at, at + 2) + "` belongs at the end of the line above",
                span(at, at + 2));
     if (source_.text(gap).find_first_of("#%") == std::string_view::npos)
       message.fix(gap, " ", Applicability::likely);
@@ -388,19 +386,19 @@ private:
     if (is(stop_ + 1, Kinds::QUANTITY)) {
       const Span both = span(stop_, stop_ + 2);
       const std::string better = std::string(text(stop_ + 1)) + " TIMES";
-      report(Code::E0001, "the number stands in front of TIMES", both)
+      report(Code::E0001, "the number goes before `TIMES`", both)
           .helps("write `" + better + "`")
           .fix(both, better, Applicability::likely);
       return change(stop_, 2, {tokens_[stop_ + 1], tokens_[stop_]});
     }
     if (stop_ == statement_ + 2) {
-      report(Code::E0008, "this does not say how many TIMES", here)
-          .helps("write a number in front of it: `2 TIMES`");
+      report(Code::E0008, "this does not say how many `TIMES`", here)
+          .helps("write a number before it: `2 TIMES`");
       return change(stop_, 0, {missing(Kinds::QUANTITY, stop_)});
     }
     const Token name = tokens_[stop_ - 1];
     const std::string better = "(" + std::string(text(stop_ - 1)) + ")";
-    report(Code::E0505, "a number that has a name stands in brackets here", name.span)
+    report(Code::E0505, "a named number needs brackets here", name.span)
         .helps("write `" + better + " TIMES`")
         .fix(name.span, better, Applicability::likely);
     return change(stop_ - 1, 1, {{Kinds::QUANTITY, name.span}});
@@ -411,10 +409,10 @@ private:
     if (!(is(stop_, Kinds::LOG) || is(stop_, Kinds::ALERT)) || !is(begin_, Kinds::EXPECT) ||
         stop_ != begin_ + 3 || !is(stop_ - 1, Kinds::TIMES))
       return std::nullopt;
-    report(Code::E0001, "a TEST counts commands, and " + quote(stop_) + " is none",
+    report(Code::E0001, "a TEST counts commands, and " + quote(stop_) + " is not one",
            span(stop_ - 2, stop_ + 1))
         .helps("write `EXPECT " + text(stop_, end_) +
-               "`, or count with a REMEMBER and ask for it with `EXPECT THAT`");
+               "`, or count with a REMEMBER and check it with `EXPECT THAT`");
     return change(stop_ - 2, 2);
   }
 
@@ -424,11 +422,11 @@ private:
     if (!(by || begins_with(Kinds::SET)) || stop_ != statement_ + 2 || !is(stop_, Kinds::NAME) ||
         !is(stop_ + 1, by ? Kinds::BY : Kinds::TO))
       return std::nullopt;
-    report(Code::E0001, "`" + text(stop_ - 1, stop_ + 1) + "` is two words, and a variable has one",
+    report(Code::E0001, "`" + text(stop_ - 1, stop_ + 1) + "` is two words, but a variable is one",
            span(stop_ - 1, stop_ + 1))
         .helps(
-            "what a sensor measures cannot be SET, RAISEd or LOWERed: only what a REMEMBER, a "
-            "FEELING or a STATE has declared");
+            "a sensor's value cannot be changed: `SET`, `RAISE` and `LOWER` change a REMEMBER, a "
+            "FEELING or a STATE");
     return change(stop_, 1);
   }
 
@@ -449,7 +447,7 @@ private:
     Span place = span(stop_ - 1, stop_ + 2);
     place.begin += static_cast<std::uint32_t>(unit);
     report(Code::E0303, "there is no unit `" + std::string(source_.text(place)) + "`", place)
-        .helps("a speed is said for a second, such as `20cm/s` or `30deg/s`");
+        .helps("speeds are per second, such as `20cm/s` or `30deg/s`");
     return change(stop_ - 1, 3, {missing(Kinds::QUANTITY, stop_ - 1)});
   }
 
@@ -458,9 +456,9 @@ private:
     if (!is(0, Kinds::BEHAVIOR) || stop_ != begin_ || begin_ == 0 || open_block() != 0)
       return std::nullopt;
     if (!begins_command(stop_) && !is(stop_, Kinds::DO)) return std::nullopt;
-    report(Code::E0010, quote(stop_) + " cannot stand in a BEHAVIOR outside of its rules",
+    report(Code::E0010, quote(stop_) + " cannot be used in a BEHAVIOR outside its rules",
            tokens_[stop_].span)
-        .helps("begin a rule in front of it, with `WHEN` or `AT START DO`, and end it with `END`");
+        .helps("put it in a rule: begin with `WHEN` or `AT START DO`, and end with `END`");
     return change(begin_, end_of_commands() - begin_,
                   {missing(Kinds::USE, begin_), missing(Kinds::NAME, begin_)});
   }
@@ -507,7 +505,7 @@ private:
     const Tokens lacking{missing(Kinds::WITHIN, before_ + 1),
                          missing(Kinds::QUANTITY, before_ + 1)};
     if (asked && is(before_, Kinds::TIMES) && before_ > 0 && is(before_ - 1, Kinds::QUANTITY)) {
-      report(Code::E0008, "this does not say in how long that is counted",
+      report(Code::E0008, "this does not say within what time to count",
              span(before_ - 1, before_ + 1))
           .helps("write `" + text(before_ - 1, before_ + 1) + " WITHIN 5s`");
       return change(before_ + 1, 0, lacking);
@@ -515,16 +513,16 @@ private:
     const auto then = then_before(before_);
     if (!then) return std::nullopt;
     if (asked) {
-      report(Code::E0008, "this does not say in how long the second thing follows the first",
+      report(Code::E0008, "this does not say how soon the second part must follow the first",
              tokens_[*then].span)
-          .helps("write it at the end of the condition: `WITHIN 5s`");
+          .helps("write the time at the end of the condition: `WITHIN 5s`");
       return change(before_ + 1, 0, lacking);
     }
     for (std::size_t at = *then; at < end_; ++at)  // a condition or a duration follows THEN
       if (is_relation(tokens_[at].kind) ||
           is_one_of(tokens_[at].kind, {Kinds::IS, Kinds::WITHIN, Kinds::DO}))
         return std::nullopt;
-    report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN", tokens_[*then].span)
+    report(Code::E0001, "a condition ends with `DO` in RSL, not with `THEN`", tokens_[*then].span)
         .fix(tokens_[*then].span, "DO", Applicability::likely);
     return change(*then, 1, {{Kinds::DO, tokens_[*then].span}});
   }
@@ -542,7 +540,7 @@ private:
     const Span name = tokens_[1].span;
     report(Code::E0008, "this MOTION does not say which actuators it moves", name)
         .helps("write `MOTION " + std::string(text(1)) +
-               " OF`, and their names with commas between");
+               " OF` and their names, separated by commas");
     return change(0, tokens_.size());
   }
 
@@ -553,12 +551,12 @@ private:
     if (!(text || truth) || stop_ < 2 || !asks_before(stop_)) return std::nullopt;
     const Span sign = tokens_[stop_ - 1].span;
     if (is(stop_ - 1, Kinds::EQUAL)) {
-      report(Code::E0001, "a word is asked for with IS, not with " + quote(stop_ - 1), sign)
+      report(Code::E0001, "words are compared with `IS`, not with " + quote(stop_ - 1), sign)
           .fix(sign, "IS", Applicability::likely);
       return change(stop_ - 1, 1, {{Kinds::IS, sign}});
     }
     if (!is(stop_ - 1, Kinds::NOT_EQUAL) || truth) return std::nullopt;
-    report(Code::E0001, "a word is asked for with IS NOT, not with " + quote(stop_ - 1), sign)
+    report(Code::E0001, "words are compared with `IS NOT`, not with " + quote(stop_ - 1), sign)
         .fix(sign, "IS NOT", Applicability::likely);
     return change(stop_ - 1, 1, {{Kinds::IS, sign}, {Kinds::NOT, sign}});
   }
@@ -569,8 +567,8 @@ private:
     const std::string name(text(statement_ + 1));
     const Span here = tokens_[stop_].span;
     if (begins_with(Kinds::SET) && is(stop_, Kinds::BY)) {
-      report(Code::E0001,
-             "SET gives a new value TO; what a value is changed BY is RAISEd or LOWERed", here)
+      report(Code::E0001, "`SET` takes `TO` and a new value; `BY` goes with `RAISE` or `LOWER`",
+             here)
           .helps("write `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "` or `RAISE " +
                  name + " BY " + text(stop_ + 1, statement_end()) + "`");
       return change(stop_, 1, {{Kinds::TO, here}});
@@ -578,7 +576,8 @@ private:
     if (!begins_with(Kinds::RAISE) && !begins_with(Kinds::LOWER)) return std::nullopt;
     const std::string word(text(statement_));
     if (is(stop_, Kinds::TO)) {
-      report(Code::E0001, word + " changes a value BY so much; a new value is SET", here)
+      report(Code::E0001, "`" + word + "` takes `BY` and an amount; to give a new value, use `SET`",
+             here)
           .helps("write `" + word + " " + name + " BY " + text(stop_ + 1, statement_end()) +
                  "` or `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "`");
       return change(stop_, 1, {{Kinds::BY, here}});
@@ -594,7 +593,7 @@ private:
   std::optional<Edit> repeat_how_often() {
     if (!begins_with(Kinds::REPEAT) || stop_ != statement_ + 1 || !is(stop_, Kinds::NEWLINE))
       return std::nullopt;
-    report(Code::E0008, "this does not say how often", tokens_[statement_].span)
+    report(Code::E0008, "this does not say how often to repeat", tokens_[statement_].span)
         .helps("write `REPEAT 3 TIMES`, `REPEAT WHILE` and a condition, or `REPEAT FOREVER`");
     return change(stop_, 0, {missing(Kinds::QUANTITY, stop_), missing(Kinds::TIMES, stop_)});
   }
@@ -606,7 +605,7 @@ private:
         !is(stop_, Kinds::FOR))
       return std::nullopt;
     const std::string time = is(end_ - 1, Kinds::QUANTITY) ? text(end_ - 1, end_) : "2s";
-    report(Code::E0001, "the robot goes on when a condition is met, not after a time alone",
+    report(Code::E0001, "the robot resumes when a condition holds, not after a time alone",
            span(stop_ - 1, end_))
         .helps("write `RESUME WHEN`, a condition and `FOR " + time + "`");
     return change(stop_, end_ - stop_,
@@ -622,8 +621,7 @@ private:
     const bool whole = is(stop_, Kinds::RESTARTING) || is(stop_ + 1, Kinds::QUANTITY);
     if (!modifier || !whole || stop_ != begin_ || !block || !has(*block, stop_, Kinds::DO))
       return std::nullopt;
-    report(Code::E0010, quote(stop_) + " stands in front of DO, with what the rule asks",
-           tokens_[stop_].span)
+    report(Code::E0010, quote(stop_) + " goes before the `DO` of its rule", tokens_[stop_].span)
         .label(tokens_[*block].span, "the rule begins here", false);
     return change(stop_, end_ - stop_);
   }
@@ -651,7 +649,7 @@ private:
     std::size_t last = stop_;
     while (last < end_ && !is(last, Kinds::DO))
       ++last;
-    report(Code::E0010, quote(stop_) + " does not go with AT START, which happens once",
+    report(Code::E0010, quote(stop_) + " does not go with `AT START`, which happens once",
            span(stop_, last));
     return change(stop_, last - stop_);
   }

@@ -50,7 +50,8 @@ std::optional<EmptyBlock> empty_block(const Tokens& tokens) {
   const auto is_list = [](TokenKind kind) { return kind == Kinds::NAME || kind == Kinds::COMMA; };
   if (motion && kinds.back() == Kinds::END &&
       std::all_of(kinds.begin() + 3, kinds.end() - 1, is_list))
-    return EmptyBlock{head_end, "a row", "a row is a time and a value for each: `AT 0s 10deg`"};
+    return EmptyBlock{head_end, "a row",
+                      "a row is a time and a value for each actuator: `AT 0s 10deg`"};
   return std::nullopt;
 }
 
@@ -161,7 +162,7 @@ private:
       diagnostics_
           .report(Code::E0012,
                   deep->in_blocks ? "more than " + std::to_string(kDeepestBlock) +
-                                        " blocks stand in each other, the most that rsc reads"
+                                        " blocks are nested here, the most that rsc reads"
                                   : "more than " + std::to_string(kDeepestBracket) +
                                         " brackets or signs are open here, the most that rsc reads")
           .label(tokens[deep->at].span)

@@ -121,11 +121,10 @@ private:
     const bool in_head = tokens_[back].kind == Kinds::WHEN || tokens_[back].kind == Kinds::WHILE;
     if (modifier == at || !in_head) return false;
     const std::string word = quote(modifier);
-    diagnostics_
-        .report(Code::E0001, "`FOR` belongs to the condition: it stands in front of " + word)
+    diagnostics_.report(Code::E0001, "`FOR` belongs to the condition: it goes before " + word)
         .label(tokens_[at].span)
-        .label(tokens_[modifier].span, "this goes behind it", false)
-        .helps("first `FOR` and its time, then " + word);
+        .label(tokens_[modifier].span, "this goes after it", false)
+        .helps("write `FOR` and its time first, then " + word);
     return true;
   }
 
@@ -196,7 +195,7 @@ private:
     } else if (expects(expected, Kinds::SEED) && expects(expected, Kinds::EXPECT)) {
       message.helps("a step begins with `AT`, `EXPECT` or `WAIT`");
     } else if (statement) {
-      message.helps("here stands a command, such as `" + examples_.command() +
+      message.helps("write a command here, such as `" + examples_.command() +
                     "`, or a line with a word such as `SET`, `WAIT` or `IF`");
     }
   }
@@ -213,10 +212,9 @@ private:
     }
     Span span = tokens_[first].span;
     span.end = tokens_[last].span.end;
-    diagnostics_.report(Code::E0008, "this does not say what the number in brackets is")
+    diagnostics_.report(Code::E0008, "this does not say what the number in brackets is for")
         .label(span)
-        .helps(
-            "write TO, BY, AT, OVER or FOR in front of it, such as `BY (…)`, or TIMES behind it");
+        .helps("write TO, BY, AT, OVER or FOR before it, such as `BY (…)`, or TIMES after it");
     return true;
   }
 
@@ -232,7 +230,7 @@ private:
       diagnostics_.report(Code::E0001, "this line ends too early").label(place(edit_.at), "here");
       return;
     }
-    diagnostics_.report(Code::E0001, found(edit_.at) + " must stand on a line of its own")
+    diagnostics_.report(Code::E0001, found(edit_.at) + " must be on a line of its own")
         .label(place(edit_.at), "the line should have ended before this");
   }
 
@@ -269,7 +267,8 @@ private:
       return;
     }
     if (unit_apart() || texts_added(edit_.at)) return;
-    Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here");
+    Diagnostic& message =
+        diagnostics_.report(Code::E0009, quote(edit_.at) + " does not belong here");
     if (belongs_to_number(edit_.at) || (says_what_is_done(token.kind) && !stands_twice(edit_.at))) {
       message.label(token.span);  // without it, the number or the program would mean something else
     } else {
@@ -306,8 +305,9 @@ private:
     if (digits.empty() || digits.back() < '0' || digits.back() > '9') return false;
     const Span gap{number.span.file, number.span.end, tokens_[edit_.at].span.begin};
     const std::string unit(source_.text(tokens_[edit_.at].span));
-    Diagnostic& message = diagnostics_.report(Code::E0009, quote(edit_.at) + " is too much here")
-                              .label(tokens_[edit_.at].span);
+    Diagnostic& message =
+        diagnostics_.report(Code::E0009, quote(edit_.at) + " does not belong here")
+            .label(tokens_[edit_.at].span);
     if (const std::string_view ours = foreign_unit(unit); !ours.empty()) {
       message.helps("RSL does not have this unit: " + std::string(ours));
       return true;
@@ -379,23 +379,23 @@ private:
   void idle_end() {
     if (const auto early = ended_before_else()) {
       const Span end = tokens_[early->by].span;
-      diagnostics_.report(Code::E0010, "no END stands in front of ELSE")
+      diagnostics_.report(Code::E0010, "`ELSE` takes no `END` before it")
           .label(end)
           .label(tokens_[early->closed].span, "the block begins here", false)
-          .helps("one END closes both sides: behind what the ELSE does")
+          .helps("one `END`, after the `ELSE` part, closes both")
           .fix(end, "", Applicability::likely);
       return;
     }
     Diagnostic& message = diagnostics_.report(Code::E0006, "this `END` closes nothing");
     message.label(tokens_[edit_.at].span);
     if (const auto early = early_end(tokens_, edit_.at, source_)) {
-      message.label(tokens_[early->by].span, "this one closed the block already", false);
+      message.label(tokens_[early->by].span, "this one already closed the block", false);
       message.label(tokens_[early->closed].span, "the block begins here", false);
     }
     const auto goes_on = [](const Token& token) { return token.kind == Kinds::ELSE_IF; };
     if (std::any_of(tokens_.begin(), tokens_.begin() + static_cast<std::ptrdiff_t>(edit_.at),
                     goes_on))
-      message.helps("one END closes an IF with all its ELSE IFs");
+      message.helps("one `END` closes an IF with all its ELSE IFs");
   }
 
   void something_else() {
@@ -416,7 +416,7 @@ private:
     if (edit_.at == failure_.stopped_at) return unexpected();
     Diagnostic& message =
         diagnostics_.report(Code::E0001, found(edit_.at) + " does not fit here" + after(edit_.at));
-    message.label(place(edit_.at), what_is_missing(wanted, {}) + " would");
+    message.label(place(edit_.at), what_is_missing(wanted, {}) + " would fit");
     if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
     show_line(message, edit_.at, failure_.expected);
   }
@@ -432,7 +432,7 @@ private:
     const bool has_do = next < tokens_.size() && tokens_[next].kind == Kinds::DO;
     Span then = place(at);
     Diagnostic& message =
-        diagnostics_.report(Code::E0001, "a line that asks ends with DO in RSL, not with THEN")
+        diagnostics_.report(Code::E0001, "a condition ends with `DO` in RSL, not with `THEN`")
             .label(then);
     if (has_do) then.begin = tokens_[at - 1].span.end;
     message.fix(then, has_do ? "" : "DO", Applicability::likely);
@@ -452,10 +452,10 @@ private:
   }
 
   void rule_inside() {
-    diagnostics_.report(Code::E0010, quote(edit_.at) + " cannot stand inside a response")
-        .label(place(edit_.at), "a rule stands outside, or in a BEHAVIOR")
-        .helps("to ask once while the response runs, write `IF`")
-        .helps("to start a rule of its own, close the response with `END` first");
+    diagnostics_.report(Code::E0010, quote(edit_.at) + " cannot be used inside a response")
+        .label(place(edit_.at), "a rule belongs outside, or in a BEHAVIOR")
+        .helps("to check once while the response runs, write `IF`")
+        .helps("to start another rule, close the response with `END` first");
   }
 
   void wrong_order() {
@@ -463,7 +463,7 @@ private:
     const Span second = tokens_[edit_.at + 1].span;
     diagnostics_
         .report(Code::E0001,
-                quote(edit_.at) + " and " + found(edit_.at + 1) + " stand in the wrong order")
+                quote(edit_.at) + " and " + found(edit_.at + 1) + " are in the wrong order")
         .label({first.file, first.begin, second.end});
   }
 
@@ -483,7 +483,7 @@ private:
   void unexpected() {
     const std::size_t at = failure_.stopped_at;
     if (is_chained()) {
-      diagnostics_.report(Code::E0001, "a comparison has two sides; this is the third")
+      diagnostics_.report(Code::E0001, "a comparison has two sides; this is a third")
           .label(place(at))
           .helps("compare twice: `0 < x AND x < 3`, or write `x IS BETWEEN 0 AND 3`");
       return;
@@ -493,7 +493,7 @@ private:
     message.label(place(at));
     const bool command = at < tokens_.size() && tokens_[at].kind == Kinds::NAME;
     if (outside_blocks() && command)
-      message.helps("commands stand in a rule or in a DEFINE: `WHEN ... DO ... END`");
+      message.helps("commands belong in a rule or a DEFINE: `WHEN ... DO ... END`");
     else
       show_line(message, at, failure_.expected);
   }
@@ -501,8 +501,8 @@ private:
   std::string cannot_stand(std::size_t at) const {
     if (at >= tokens_.size()) return "the file ends too early";
     if (tokens_[at].kind == Kinds::NEWLINE) return "this line ends too early" + after(at);
-    return first_in_text_line(at) ? "no line begins with " + found(at) + " here"
-                                  : found(at) + " cannot stand" + after(at);
+    return first_in_text_line(at) ? "a line cannot begin with " + found(at) + " here"
+                                  : found(at) + " is not allowed" + after(at);
   }
 
   const Tokens& tokens_;
