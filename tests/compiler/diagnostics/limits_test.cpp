@@ -94,15 +94,14 @@ TEST_CASE("statements that are too many") {
 
 TEST_CASE("numbers that are too large") {
   const std::string rest = " DO\n  LOG \"x\"\nEND\n";
-  says("no room for `3000000`: its numbers go from -2147483 to 2147483",
+  says("cannot store `3000000`: its numbers go from -2147483 to 2147483",
        "WHEN touch LEVEL < 3000000" + rest);
-  says("no room for `300000`: its numbers go from -214748cm to 214748cm",
+  says("cannot store `300000`: its numbers go from -214748cm to 214748cm",
        "WHEN proximity DISTANCE < 300000" + rest);
-  says("no room for `100000min`: its numbers go from -35791min to 35791min",
+  says("cannot store `100000min`: its numbers go from -35791min to 35791min",
        "EVERY 100000min" + rest);
-  says("has 20 digits, and rsc reads at most 16", "WHEN touch LEVEL < 99999999999999999999" + rest);
-  says("has 10 digits behind the point, and rsc reads at most 9",
-       "WHEN touch LEVEL < 0.0000000001" + rest);
+  says("has 20 digits; the limit is 16", "WHEN touch LEVEL < 99999999999999999999" + rest);
+  says("has 10 decimal places; the limit is 9", "WHEN touch LEVEL < 0.0000000001" + rest);
   says("the result of this is above 2147483, the largest", "LET x = 2000000 + 2000000\n");
   says("the result of this is below -214748cm, the smallest", "LET x = -200000cm - 200000cm\n");
   says("this TEST would take 7200s; the limit is an hour, 3600s",
@@ -114,21 +113,21 @@ TEST_CASE("numbers that are too large") {
 TEST_CASE("numbers of robot.json that are too large") {
   const std::vector<std::tuple<std::string, std::string>> cases = {
       {R"("range": [0, 3000000])",
-       "no room for `3000000`: its numbers go from -2147483 to 2147483"},
+       "cannot store `3000000`: its numbers go from -2147483 to 2147483"},
       {R"("unit": "cm", "range": ["0cm", "300000cm"])",
-       "no room for `300000cm`: its numbers go from -214748cm to 214748cm"},
-      {R"("range": [0, 0.12345678901])", "has 11 digits behind the point, and rsc reads at most 9"},
-      {R"("range": [0, 123456789012345678])", "has 18 digits, and rsc reads at most 16"},
+       "cannot store `300000cm`: its numbers go from -214748cm to 214748cm"},
+      {R"("range": [0, 0.12345678901])", "has 11 decimal places; the limit is 9"},
+      {R"("range": [0, 123456789012345678])", "has 18 digits; the limit is 16"},
       {R"("range": [0, "1.2.3"])", "this number cannot be read"},
-      {R"("range": [0, 1e999])", "no room for `1e999`: its numbers go from -2147483 to 2147483"},
+      {R"("range": [0, 1e999])", "cannot store `1e999`: its numbers go from -2147483 to 2147483"},
       {R"("scale": 0)", "a scale cannot be 0"},
       {R"("scale": 3000000)",
-       "this scale is 3000000000/1 in thousandths, and a robot keeps fractions up to "
+       "this scale is 3000000000/1 in thousandths, but a robot stores fractions up to "
        "2147483647/65535"},
       {R"("unit": "cm", "scale": "0.000000007cm")",
        "this scale is 7/100000 in thousandths of `mm`"},
       {R"("rate": "0Hz")", "a rate must be above 0"},
-      {R"("stale_after": "70s")", "this comes to 70000 ms, and must be from 1 ms to 65535 ms"},
+      {R"("stale_after": "70s")", "this is 70000 ms, but must be from 1 ms to 65535 ms"},
   };
   for (const auto& [channel, words] : cases)
     says(words, "", sensor_with(channel));
