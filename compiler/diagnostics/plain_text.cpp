@@ -12,7 +12,7 @@ namespace robosync::compiler {
 namespace {
 
 constexpr const char* kSaveAsUtf8 =
-    "save it as UTF-8: in most editors it is a choice of \"Save as\", called encoding";
+    "save it as UTF-8: most editors offer the encoding in \"Save as\"";
 
 // With or without a byte order mark: without it, every second byte of ASCII text is NUL.
 bool is_utf16(std::string_view text) {
@@ -43,12 +43,12 @@ public:
 
   bool run() {
     if (is_utf16(text_)) {
-      report("this file is UTF-16, and rsc reads UTF-8", 0, 0).helps(kSaveAsUtf8);
+      report("this file is UTF-16, but rsc reads UTF-8", 0, 0).helps(kSaveAsUtf8);
       return false;
     }
     if (const std::size_t nul = text_.find('\0'); nul != std::string_view::npos) {
-      report("a NUL byte (U+0000) stands here, which is in no text", nul, 1)
-          .helps("delete it; if it cannot be seen, write the line anew");
+      report("there is a NUL byte (U+0000) here, which is not valid text", nul, 1)
+          .helps("delete it; if you cannot see it, retype the line");
       return false;
     }
     return is_ascii(text_) || look_at_each();
@@ -69,9 +69,10 @@ private:
         return false;
       }
       if (turns_direction(point.value)) {
-        report(utf8::describe(point.value) + " shows what follows otherwise than rsc reads it", at,
-               point.size)
-            .helps("delete it; it has no place in a program, nor in its texts and comments");
+        report(
+            utf8::describe(point.value) + " makes what follows look different from what rsc reads",
+            at, point.size)
+            .helps("delete it: it is not allowed in a program, not even in texts and comments");
         return false;
       }
       at += point.size;
