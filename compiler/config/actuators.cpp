@@ -160,9 +160,9 @@ void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& 
   if (actuator.safe != vm::Release::hold || !vm::drives_on(actuator.driver)) return;
   const bool sounds = vm::drives_speaker(actuator.driver) || vm::drives_player(actuator.driver);
   diagnostics
-      .report(Code::E0205,
-              std::string(sounds ? "a tone with `hold` sounds" : "a motor with `hold` runs") +
-                  " on when the robot is halted")
+      .report(Code::E0205, std::string(sounds ? "a tone with `hold` keeps sounding"
+                                              : "a motor with `hold` keeps running") +
+                               " when the robot is halted")
       .label(value.span)
       .helps("`safe` can be `coast` (off) here; only a servo may `hold`");
 }

@@ -210,12 +210,11 @@ bool is_wrong_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostic
   const std::size_t opening = mistake.open_span->begin;
   const std::string closer(1, closer_of(mistake.text[opening]));
   if (closer[0] == c) return false;
-  Diagnostic& d =
-      diagnostics
-          .report(Code::E0201, std::string(closer == "]" ? "a list" : "an object") +
-                                   " closes with `" + closer + "`, not with `" + c + "`")
-          .label(span_of(mistake, wrong.begin, wrong.end))
-          .label(span_of(mistake, opening, opening + 1), "opened here", false);
+  Diagnostic& d = diagnostics
+                      .report(Code::E0201, std::string(closer == "]" ? "a list" : "an object") +
+                                               " ends with `" + closer + "`, not with `" + c + "`")
+                      .label(span_of(mistake, wrong.begin, wrong.end))
+                      .label(span_of(mistake, opening, opening + 1), "opened here", false);
   std::string mended(mistake.text);
   mended.insert(wrong.begin, closer);
   const std::size_t behind = wrong.before + 1;

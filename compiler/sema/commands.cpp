@@ -663,7 +663,7 @@ void Commands::report_not_taken(const Recipient& to, const Given& given) {
       alone && to.verb.has(vm::Param::to) && !given.number.is_bare() &&
       given.number.dimension() == param_unit(to.actuator, vm::Param::to, &to.verb).dimension;
   if (place)
-    d.helps(verb + " takes a place or a strength with `TO`")
+    d.helps(verb + " takes a position or a power with `TO`")
         .fix({span.file, span.begin, span.begin}, "TO ", Applicability::likely);
   else
     d.helps(taken_by(to.verb));

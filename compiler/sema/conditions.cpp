@@ -218,7 +218,7 @@ Typed Expressions::condition(const ast::Expr& expr, const ast::Expr* margin) {
   if (result.type == Type::condition && !open.used)
     diagnostics_.report(Code::E0409, "this condition has no comparison that a MARGIN applies to")
         .label(margin->span)
-        .helps(reads_time(result.code) ? "a TIMER does not flicker, so it needs none"
+        .helps(reads_time(result.code) ? "a TIMER does not flicker, so it needs no MARGIN"
                                        : "a MARGIN applies to `<`, `>`, `<=`, `>=` and IS BETWEEN, "
                                          "in the same kind of unit");
   return result;

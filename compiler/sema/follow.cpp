@@ -113,7 +113,7 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate_followed(const as
 std::optional<Follow> Commands::follow(const ast::Command& command, bool expected) {
   chosen_ = nullptr;
   if (first_word(command) == nullptr) {
-    diagnostics_.report(Code::E0504, "this does not say which actuator is to follow")
+    diagnostics_.report(Code::E0504, "this does not say which actuator should follow")
         .label(command.verb.span)
         .helps("name the actuator first: `FOLLOW head TO (voice DIRECTION)`");
     return std::nullopt;

@@ -88,7 +88,7 @@ void Limits::limit_reading(const ast::Limit& limit, ChannelRef channel, std::uin
   if (!target) {
     diagnostics_.report(Code::E0501, "there is no actuator " + limit.actuator.shown() + " to stop")
         .label(limit.actuator.span)
-        .helps("name a group in robot.json like the sensor");
+        .helps("give a group in robot.json the name of the sensor");
     return;
   }
   const ChannelConfig& config = names_.channel(channel);
