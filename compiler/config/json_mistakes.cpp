@@ -99,7 +99,8 @@ std::string describe_character(const Mistake& mistake, const WrongText& wrong) {
   if (c == '\'') return "JSON strings need double quotes";
   if (c == '/' || c == '#' || c == '%') return "JSON has no comments";
   if (byte < 0x20) return "a string runs past the end of its line, or contains a control character";
-  if (mistake.good_until > 0 && !mistake.open_span) return "there is something after the end";
+  if (mistake.good_until > 0 && !mistake.open_span)
+    return "there is something after the end of the JSON";
   if (is_word(c)) return describe_word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
   return "this is not JSON here";
 }
