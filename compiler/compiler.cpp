@@ -23,7 +23,7 @@ Diagnostics offer_modules(const Diagnostics& diagnostics) {
     if (!module.empty()) {
       diagnostic.fixes.clear();
       diagnostic.help = {"the module `" + std::string(module) + "` has it: write `USE " +
-                         std::string(module) + "` at the beginning"};
+                         std::string(module) + "` at the top"};
     }
     result.add(std::move(diagnostic));
   }

@@ -63,8 +63,7 @@ private:
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module " + use.module.shown())
                         .label(use.module.span);
     if (!did_you_mean(d, use.module.span, use.module.text, names))
-      d.helps("a file of your own stands in quotes: `USE \"" + std::string(use.module.text) +
-              ".rsl\"`");
+      d.helps("put your own file in quotes: `USE \"" + std::string(use.module.text) + ".rsl\"`");
     return std::nullopt;
   }
 
@@ -74,7 +73,7 @@ private:
     if (input || use.is_guess) return input;
     diagnostics_.report(Code::E0410, "the module \"" + name + "\" cannot be read")
         .label(use.module.span)
-        .helps("its path begins where this file is");
+        .helps("its path is relative to this file");
     return std::nullopt;
   }
 

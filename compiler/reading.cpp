@@ -32,11 +32,11 @@ bool is_configuration(const SourceMap& sources, FileId file, Diagnostics& diagno
   const bool is_json = name.ends_with(kJson);
   if (is_json) name.replace(name.size() - kJson.size(), kJson.size(), ".rsl");
   const auto place = static_cast<std::uint32_t>(begin);
-  diagnostics.report(Code::E0001, "this is a configuration in JSON, and no program")
+  diagnostics.report(Code::E0001, "this is a JSON configuration, not a program")
       .label({file, place, place + 1})
       .helps(is_json ? "name the program, such as `" + name +
-                           "`: what describes its robot is found by itself"
-                     : "what describes the robot stands in a file of its own, robot.json");
+                           "`: rsc finds the robot's description automatically"
+                     : "the robot's description goes in a file of its own, robot.json");
   return true;
 }
 

@@ -19,7 +19,7 @@ struct CostlyRule {
 [[nodiscard]] std::vector<CostlyRule> costly_rules(const vm::Image& image);
 
 inline constexpr std::string_view kHelpForCostlyStep =
-    "what stands in a REPEAT counts as often as it runs: repeat it less often, or WAIT in it, so "
-    "that a later step goes on";
+    "a REPEAT counts as often as it runs: repeat it less often, or put a WAIT in it so that "
+    "the rest runs in a later step";
 
 }  // namespace robosync::compiler

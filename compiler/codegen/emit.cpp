@@ -74,7 +74,7 @@ bool Emitter::counts_fit() {
     if (count > limit)
       diagnostics_
           .report(Code::E0407, "the program has " + std::to_string(count) + " " + what +
-                                   ", and an image has room for " + std::to_string(limit))
+                                   "; the limit is " + std::to_string(limit))
           .label({});
     return count <= limit;
   };

@@ -247,9 +247,9 @@ void ResponseEmitter::emit(const ir::Halt& halt) {
 void ResponseEmitter::count_block() {
   ++open_blocks_;
   if (open_blocks_ == vm::kMaxBlocks + 1)
-    parts_.too_large("more than " + std::to_string(vm::kMaxBlocks) +
-                         " blocks stand in each other here, the most that a robot takes",
-                     current_->span);
+    parts_.too_large(
+        "blocks are nested more than " + std::to_string(vm::kMaxBlocks) + " levels deep here",
+        current_->span);
 }
 
 std::size_t ResponseEmitter::open(Opcode opcode, Operand a, Operand b) {
@@ -408,10 +408,10 @@ void ResponseEmitter::emit(const ir::Pick& pick) {
   for (const ir::Option& option : pick.options)
     total += option.weight;
   if (total > vm::kValueMax)
-    return parts_.too_large(
-        "the shares of the options come to " + std::to_string(total / vm::kScale) +
-            " together, and a robot takes " + std::to_string(vm::kValueMax / vm::kScale),
-        current_->span);
+    return parts_.too_large("the shares of the options add up to " +
+                                std::to_string(total / vm::kScale) + "; the limit is " +
+                                std::to_string(vm::kValueMax / vm::kScale),
+                            current_->span);
   const Cell least = expressions_.constant(0, 0);
   const Cell most = expressions_.constant(static_cast<vm::Value>(total - 1), 1);
   const Cell drawn = parts_.frame.add_local();

@@ -138,8 +138,7 @@ void RuleWriter::reserve_limits() {
   if (limits > kMaxConst8)
     diagnostics_
         .report(Code::E0407, "the variables that responses set have " + std::to_string(limits) +
-                                 " different limits, and a robot takes " +
-                                 std::to_string(kMaxConst8))
+                                 " different limits; the most is " + std::to_string(kMaxConst8))
         .label({});
 }
 
@@ -210,7 +209,7 @@ std::uint8_t RuleWriter::modifiers(const ir::Rule& rule) {
 std::string RuleWriter::title(const ir::Behavior& behavior) {
   if (!behavior.name.empty()) return "the behaviour `" + behavior.name + "`";
   if (behavior.priority == vm::kSafetyPriority) return "all SAFETY rules together";
-  return "the rule in line " + std::to_string(behavior.rules.front().line);
+  return "the rule on line " + std::to_string(behavior.rules.front().line);
 }
 
 bool RuleWriter::fits(const Parts& parts, const ir::Behavior& behavior, std::size_t rules) {
@@ -218,7 +217,7 @@ bool RuleWriter::fits(const Parts& parts, const ir::Behavior& behavior, std::siz
     if (count <= limit) return true;
     diagnostics_
         .report(Code::E0407, "for " + title(behavior) + " the robot needs " +
-                                 std::to_string(count) + " " + what + ", and it can have " +
+                                 std::to_string(count) + " " + what + "; the limit is " +
                                  std::to_string(limit))
         .label(behavior.rules.front().span);
     return false;

@@ -99,8 +99,7 @@ void Tables::check_counts(const ir::Program& program, Diagnostics& diagnostics) 
     if (count > limit)
       diagnostics
           .report(Code::E0407, "the program uses " + std::to_string(count) + " " +
-                                   std::string(what) + ", and a robot can have " +
-                                   std::to_string(limit))
+                                   std::string(what) + "; the limit is " + std::to_string(limit))
           .label({});
   };
   // One more group would get the number kAllActuators.

@@ -16,9 +16,9 @@ void report_costly_step(const Emitted& emitted, Span span, Diagnostics& diagnost
   Diagnostic& report = diagnostics.report(
       Code::E0407, cost > vm::Limits{}.step_cost
                        ? "one step of the program could take up to " + std::to_string(cost) +
-                             " instructions on the robot, and at most " + most + " may run in it"
+                             " instructions on the robot; the limit is " + most
                        : "one step of the program could take more than " + most +
-                             " instructions on the robot, the most that may run in it");
+                             " instructions, the most that a robot allows");
   report.helps(std::string(kHelpForCostlyStep));
   bool primary = true;
   for (const CostlyRule& costly : whole ? costly_rules(image) : std::vector<CostlyRule>{}) {
@@ -36,7 +36,7 @@ void report_costly_step(const Emitted& emitted, Span span, Diagnostics& diagnost
 }
 
 std::string too_much(std::size_t count, const std::string& of_what, std::size_t limit) {
-  return "the program needs " + std::to_string(count) + " " + of_what + ", and a robot has " +
+  return "the program needs " + std::to_string(count) + " " + of_what + "; the limit is " +
          std::to_string(limit);
 }
 
@@ -64,16 +64,15 @@ std::string too_many(const Emitted& emitted) {
 std::string too_large(vm::Refusal refusal, const Emitted& emitted) {
   switch (refusal) {
     case vm::Refusal::too_large:
-      return "the program has " + std::to_string(emitted.image.size()) +
-             " bytes, and a robot takes " + std::to_string(vm::Limits{}.image_bytes);
+      return "the program has " + std::to_string(emitted.image.size()) + " bytes; the limit is " +
+             std::to_string(vm::Limits{}.image_bytes);
     case vm::Refusal::too_many:
       return too_many(emitted);
     case vm::Refusal::too_much_output:
-      return "the commands up to here come to more than " + std::to_string(vm::kMaxResponseOutput) +
-             " words, the most that a robot takes in one step";
+      return "the commands up to here take more than " + std::to_string(vm::kMaxResponseOutput) +
+             " words, the most that a robot can handle in one step";
     case vm::Refusal::too_deep:
-      return "more than " + std::to_string(vm::kMaxBlocks) +
-             " blocks stand in each other here, the most that a robot takes";
+      return "blocks are nested more than " + std::to_string(vm::kMaxBlocks) + " levels deep here";
     default:
       return {};
   }
@@ -83,13 +82,13 @@ void report_too_large(vm::Refusal refusal, std::string what, Span span, Diagnost
   Diagnostic& d = diagnostics.report(Code::E0407, std::move(what)).label(span);
   if (refusal == vm::Refusal::too_much_output)
     d.helps(
-        "write THEN or a WAIT between them, so that they come one step after the other; a command "
-        "is one word, and two more for each number that it is given");
+        "put THEN or a WAIT between them to spread them over several steps; a command takes "
+        "one word, and two more for each of its numbers");
 }
 
 void report_refused(const vm::Verdict& verdict, Span span, Diagnostics& diagnostics) {
   diagnostics
-      .report(Code::E0499, "rsc made an image that the robot refuses: " +
+      .report(Code::E0499, "rsc produced an image that the robot rejects: " +
                                std::string(vm::describe(verdict.refusal)) + " (" +
                                std::string(vm::describe(verdict.section)) + " " +
                                std::to_string(verdict.index) + ")")

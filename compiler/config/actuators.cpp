@@ -18,7 +18,7 @@ void read_position_range(const json::Value& value, ActuatorConfig& actuator,
                          Diagnostics& diagnostics) {
   actuator.range_span = value.span;
   if (actuator.to_unit == nullptr) {
-    diagnostics.report(Code::E0205, "this device has no position that could have a range")
+    diagnostics.report(Code::E0205, "this device has no position, so it cannot have a range")
         .label(value.span);
     return;
   }
@@ -26,7 +26,7 @@ void read_position_range(const json::Value& value, ActuatorConfig& actuator,
   if (!range) return;
   if (range->low < actuator.min || range->high > actuator.max) {
     diagnostics
-        .report(Code::E0205, "this range is larger than the device's own, " +
+        .report(Code::E0205, "this range is larger than the device's own range, " +
                                  format_value(actuator.min, *actuator.to_unit) + " to " +
                                  format_value(actuator.max, *actuator.to_unit))
         .label(value.span);
@@ -114,8 +114,7 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
   if (speed == nullptr) return;
   actuator.limit_span = speed->span;
   if (actuator.at_unit == nullptr) {
-    diagnostics.report(Code::E0205, "this device has no speed that could be limited")
-        .label(speed->span);
+    diagnostics.report(Code::E0205, "this device has no speed to limit").label(speed->span);
     return;
   }
   const auto limit = read_quantity(*speed, *actuator.at_unit, diagnostics);
@@ -129,8 +128,7 @@ void report_panel_keys(const Fields& fields, Diagnostics& diagnostics) {
   for (const std::string_view key : panel_keys())
     if (const auto* value = fields.find(key))
       diagnostics
-          .report(Code::E0205, "this device has no lights of which `" + std::string(key) +
-                                   "` could be said: a panel, `ws2812`, has")
+          .report(Code::E0205, "only a panel of lights (`ws2812`) has `" + std::string(key) + "`")
           .label(value->span);
 }
 
@@ -154,19 +152,19 @@ void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& 
     diagnostics
         .report(Code::E0205,
                 "a servo on a chip cannot go to rest when the robot is halted: that "
-                "would need the bus, which may be what is wrong")
+                "would need the bus, which may have failed")
         .label(value.span)
-        .helps("`safe` can be `coast` here: limp; or `hold`");
+        .helps("`safe` can be `coast` (limp) or `hold` here");
     actuator.safe = vm::Release::coast;
   }
   if (actuator.safe != vm::Release::hold || !vm::drives_on(actuator.driver)) return;
   const bool sounds = vm::drives_speaker(actuator.driver) || vm::drives_player(actuator.driver);
   diagnostics
-      .report(Code::E0205, std::string(sounds ? "a tone that is held sounds"
-                                              : "a motor that holds what it does runs") +
-                               " on when the robot is halted")
+      .report(Code::E0205, std::string(sounds ? "a tone with `hold` keeps sounding"
+                                              : "a motor with `hold` keeps running") +
+                               " when the robot is halted")
       .label(value.span)
-      .helps("`safe` can be `coast` here: off; only a servo may `hold`");
+      .helps("`safe` can be `coast` (off) here; only a servo may `hold`");
 }
 
 }  // namespace

@@ -91,11 +91,11 @@ private:
     const bool on_companion = !module_->device.empty();
     if (!wants_companion_ || *wants_companion_ == on_companion) return true;
     diagnostics_
-        .report(Code::E0205, shown() + (on_companion ? " runs on a companion computer only"
-                                                     : " runs on the board only"))
+        .report(Code::E0205, shown() + (on_companion ? " runs only on a companion computer"
+                                                     : " runs only on the board"))
         .label(on_->span)
-        .helps(on_companion ? "write \"companion\", or leave `on` out"
-                            : "leave `on` out; `rsc companion --list` says what runs there");
+        .helps(on_companion ? "write \"companion\", or remove `on`"
+                            : "remove `on`; `rsc companion --list` lists what runs on a companion");
     return false;
   }
 
@@ -121,8 +121,8 @@ private:
   std::string how_to_make() const {
     std::error_code error;
     if (!std::filesystem::exists(folder_ / "CMakeLists.txt", error))
-      return "a module is made of its C file with a compiler (docs/algorithms.md)";
-    return "`cmake -B build && cmake --build build`, in the folder of robot.json, makes it of its "
+      return "build it from its C file with a compiler (docs/algorithms.md)";
+    return "`cmake -B build && cmake --build build` in the folder of robot.json builds it from its "
            "C file";
   }
 
@@ -134,26 +134,26 @@ private:
                   "a module in a file runs in rsc run and rsc test, not on a companion computer")
           .label(on_->span)
           .label(path.span, "the file", false)
-          .helps("leave `on` out");
+          .helps("remove `on`");
       return false;
     }
     if (const auto* module = fields_.find("module")) {
-      diagnostics_.report(Code::E0205, "a module is in a file, or one of the firmware's, not both")
+      diagnostics_.report(Code::E0205, "a module comes from a file or from the firmware, not both")
           .label(module->span)
           .label(path.span, "the file", false)
-          .helps("leave one of the two out");
+          .helps("remove one of the two");
       return false;
     }
     const std::string file = in_folder(path.text);
     const ModuleInFile found = modules_.in_file != nullptr
                                    ? modules_.in_file(file)
-                                   : ModuleInFile{nullptr, 0, "nobody here loads files"};
+                                   : ModuleInFile{nullptr, 0, "this tool does not load files"};
     module_ = found.module;
     number_ = found.number;
     if (module_ == nullptr)
       diagnostics_.report(Code::E0210, "the module " + file + " cannot be used: " + found.why_not)
           .label(path.span)
-          .helps("`rsc module check " + file + "` looks at it closely");
+          .helps("`rsc module check " + file + "` examines it");
     return module_ != nullptr;
   }
 
@@ -226,7 +226,7 @@ private:
     if (!is_algorithm(sensor)) return &sensor;
     diagnostics_.report(Code::E0205, "an algorithm cannot read another algorithm")
         .label(input_span_)
-        .helps("name the sensor itself");
+        .helps("name the sensor that it reads");
     return nullptr;
   }
 
@@ -235,11 +235,11 @@ private:
     const std::size_t needed = module_->inputs.size();
     if (sensor.channels.size() < needed) {
       diagnostics_
-          .report(Code::E0205, shown() + " reads " + std::to_string(needed) + " channels, and " +
+          .report(Code::E0205, shown() + " reads " + std::to_string(needed) + " channels, but " +
                                    sensor.name.shown() + " has " +
                                    std::to_string(sensor.channels.size()))
           .label(input_span_)
-          .helps("in this order: " + list_names(names_of(module_->inputs)));
+          .helps("it needs, in this order: " + list_names(names_of(module_->inputs)));
       return false;
     }
     for (std::size_t i = 0; i < needed; ++i)
@@ -256,7 +256,7 @@ private:
                                ? std::string(dimension_phrase(channel.unit->dimension))
                                : std::string("words");
     diagnostics_
-        .report(Code::E0205, shown() + " needs " + what + " as its " + input.name + ", and " +
+        .report(Code::E0205, shown() + " needs " + what + " as its " + input.name + ", but " +
                                  channel.name.shown() + " gives " + is)
         .label(input_span_)
         .label(channel.unit_span, "this channel", false);
@@ -270,9 +270,9 @@ private:
     if (same_name(value->text, module_->device)) return;
     diagnostics_
         .report(Code::E0205, shown() + " reads the " + module_->device +
-                                 " of the companion computer, and no sensor of the robot")
+                                 " of the companion computer, not a sensor of the robot")
         .label(value->span)
-        .helps("write \"" + module_->device + "\", or leave `input` out");
+        .helps("write \"" + module_->device + "\", or remove `input`");
   }
 
   // ---- its rate
@@ -283,10 +283,10 @@ private:
     const bool fed = input.driver == vm::DriverId::virtual_sensor || input.period_ms == 0;
     if (rate != nullptr && !fed) {
       diagnostics_
-          .report(Code::E0205, "an algorithm runs whenever its input is sampled, and " +
-                                   input.name.shown() + " has a rate")
+          .report(Code::E0205, "an algorithm runs whenever its input is sampled, but " +
+                                   input.name.shown() + " has its own rate")
           .label(rate->span)
-          .helps("set the rate of its channels, and leave this one out");
+          .helps("set the rate of its channels, and remove this one");
       return input.period_ms;
     }
     return period_in_range(fed ? module_->usual_period_ms : input.period_ms, input_span_);

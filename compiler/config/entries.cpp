@@ -41,7 +41,7 @@ void report_no_board(const json::Value& value, std::string_view owner, const Boa
   if (said || board.named == Board::Named::wrongly) return;
   diagnostics.report(Code::E0206, message)
       .label(value.span, "a part of a board")
-      .helps("`" + value.text + "` is on this one: `\"board\": \"" + std::string(owner) + "\"`");
+      .helps("add the one with `" + value.text + "`: `\"board\": \"" + std::string(owner) + "\"`");
 }
 
 void report_unknown_device(const json::Value& value, const Board& board, bool is_sensor,
@@ -53,17 +53,18 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
   if (find_device(part != nullptr ? part->device : value.text, !is_sensor) != nullptr) {
     const std::string list = is_sensor ? "actuators" : "sensors";
     diagnostics
-        .report(Code::E0208, "a `" + value.text + "` is " +
-                                 (is_sensor ? "an actuator, no sensor" : "a sensor, no actuator"))
+        .report(Code::E0208,
+                "a `" + value.text + "` is " +
+                    (is_sensor ? "an actuator, not a sensor" : "a sensor, not an actuator"))
         .label(value.span)
-        .helps("it stands in the list `\"" + list + "\"`");
+        .helps("it belongs in the list `\"" + list + "\"`");
     return;
   }
   const std::vector<std::string> candidates = device_names(board, is_sensor);
   Diagnostic& d =
       diagnostics.report(Code::E0208, "rsc knows no device `" + value.text + "`").label(value.span);
   if (!owner.empty() && owner != board.name)
-    d.helps("it is on the board " + std::string(owner) + ", and this robot has the board " +
+    d.helps("it is on the board " + std::string(owner) + ", but this robot has the board " +
             board.name);
   else if (!did_you_mean(d, value.span, value.text, candidates, "\""))
     d.helps("known devices: " + list_names(candidates));
@@ -90,7 +91,8 @@ std::string what_it_does(bool is_sensor) {
 }
 
 void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnostics) {
-  std::string assumed = "`" + name.text + "` is taken as the generic device `" + device.name + "`";
+  std::string assumed =
+      "`" + name.text + "` is assumed to be the generic device `" + device.name + "`";
   if (device.is_sensor) {
     const ChannelConfig& channel = device.sensor.channels.front();
     assumed += ": one channel " + channel.name.text;
@@ -101,9 +103,8 @@ void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnos
   }
   diagnostics.report(Code::N0001, assumed)
       .label(name.span)
-      .helps(device.is_sensor
-                 ? "say what it is with \"device\", or with \"channels\" and their units"
-                 : "say what it is with \"device\"");
+      .helps(device.is_sensor ? "specify it with \"device\", or with \"channels\" and their units"
+                              : "specify it with \"device\"");
 }
 
 }  // namespace
@@ -144,7 +145,7 @@ const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_s
       .report(Code::E0205, "a " + device->name + " is wired by " + device->type + ", not by " +
                                std::string(type->name))
       .label(named->span)
-      .helps("its `type` can be left out");
+      .helps("remove its `type`: it is not needed");
   return nullptr;  // so foreign keys cannot be checked
 }
 

@@ -54,7 +54,7 @@ void Fields::check_key(const json::Member& member, Object object) {
     report_unknown(member, object, diagnostics_);
   } else if (key->use == KeyUse::later) {
     diagnostics_.report(Code::W0213, "`" + member.key + "` is not used by this version of rsc yet")
-        .label(member.key_span, "nothing reads this");
+        .label(member.key_span, "this has no effect");
   }
 }
 

@@ -96,11 +96,11 @@ std::string describe_character(const Mistake& mistake, const WrongText& wrong) {
   if (byte >= 0x80)
     return "JSON does not use " + utf8::describe(utf8::decode(mistake.text, wrong.begin).value) +
            " outside of strings";
-  if (c == '\'') return "JSON strings stand in double quotes";
+  if (c == '\'') return "JSON strings need double quotes";
   if (c == '/' || c == '#' || c == '%') return "JSON has no comments";
-  if (byte < 0x20)
-    return "a string goes over the end of its line, or has a control character in it";
-  if (mistake.good_until > 0 && !mistake.open_span) return "there is something after the end";
+  if (byte < 0x20) return "a string runs past the end of its line, or contains a control character";
+  if (mistake.good_until > 0 && !mistake.open_span)
+    return "there is something after the end of the JSON";
   if (is_word(c)) return describe_word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
   return "this is not JSON here";
 }
@@ -123,7 +123,7 @@ bool is_in_curly_quotes(const Mistake& mistake, const WrongText& wrong, Diagnost
   const utf8::CodePoint opening = utf8::decode(mistake.text, wrong.begin);
   if (!is_curly(opening.value)) return false;
   Diagnostic& d =
-      diagnostics.report(Code::E0201, "JSON strings stand in straight quotes, not in curly ones")
+      diagnostics.report(Code::E0201, "JSON strings need straight quotes, not curly ones")
           .label(span_of(mistake, wrong.begin, wrong.begin + opening.size));
   const std::size_t inner = wrong.begin + opening.size;
   for (std::size_t at = inner; at < mistake.text.size();) {
@@ -157,9 +157,9 @@ bool is_foreign_word(const Mistake& mistake, const WrongText& wrong, Diagnostics
     return true;
   }
   if (word != "None" && (!ascii::same(word, "null") || word == "null")) return false;
-  diagnostics.report(Code::E0201, "JSON does not know `" + word + "`")
+  diagnostics.report(Code::E0201, "JSON has no `" + word + "`")
       .label(here)
-      .helps("what is not there is left out, with its key");
+      .helps("to leave a value out, remove its key, too");
   return true;
 }
 
@@ -170,7 +170,7 @@ bool is_unclosed_string(const Mistake& mistake, const WrongText& wrong, Diagnost
   if (!touches || std::isalpha(static_cast<unsigned char>(text[wrong.begin])) == 0) return false;
   const std::size_t opening = text.rfind('"', wrong.before - 1);
   if (opening == std::string_view::npos) return false;
-  Diagnostic& d = diagnostics.report(Code::E0201, "this text has no quote at its end")
+  Diagnostic& d = diagnostics.report(Code::E0201, "this text has no closing quote")
                       .label(span_of(mistake, opening, wrong.before));
   const std::size_t last = text.find_last_not_of(" \t", wrong.before - 1);
   if (last > opening + 1 && (text[last] == ',' || text[last] == ':'))
@@ -211,17 +211,16 @@ bool is_wrong_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostic
   const std::size_t opening = mistake.open_span->begin;
   const std::string closer(1, closer_of(mistake.text[opening]));
   if (closer[0] == c) return false;
-  Diagnostic& d =
-      diagnostics
-          .report(Code::E0201, std::string(closer == "]" ? "a list" : "an object") +
-                                   " is closed with `" + closer + "`, not with `" + c + "`")
-          .label(span_of(mistake, wrong.begin, wrong.end))
-          .label(span_of(mistake, opening, opening + 1), "opened here", false);
+  Diagnostic& d = diagnostics
+                      .report(Code::E0201, std::string(closer == "]" ? "a list" : "an object") +
+                                               " ends with `" + closer + "`, not with `" + c + "`")
+                      .label(span_of(mistake, wrong.begin, wrong.end))
+                      .label(span_of(mistake, opening, opening + 1), "opened here", false);
   std::string mended(mistake.text);
   mended.insert(wrong.begin, closer);
   const std::size_t behind = wrong.before + 1;
   if (c != ')' && is_balanced(mended))
-    d.helps("`" + closer + "` is missing in front of it")
+    d.helps("`" + closer + "` is missing before it")
         .fix(span_of(mistake, behind, behind), closer, Applicability::likely);
   mended.erase(wrong.begin + 1, 1);
   if (is_balanced(mended))
@@ -234,7 +233,7 @@ bool is_round_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostic
   const std::string_view text = mistake.text;
   const bool is_value = wrong.previous == ':' || wrong.previous == ',' || wrong.previous == '[';
   if (text[wrong.begin] != '(' || !mistake.open_span || !is_value) return false;
-  Diagnostic& d = diagnostics.report(Code::E0201, "a list stands in square brackets in JSON")
+  Diagnostic& d = diagnostics.report(Code::E0201, "a list needs square brackets in JSON")
                       .label(span_of(mistake, wrong.begin, wrong.end));
   const std::size_t last = text.find_first_of("(){}[]", wrong.begin + 1);
   if (last != std::string_view::npos && text[last] == ')')
@@ -253,8 +252,8 @@ bool is_semicolon(const Mistake& mistake, const WrongText& wrong, Diagnostics& d
   const bool last = next == std::string_view::npos || text[next] == '}' || text[next] == ']';
   const Span here = span_of(mistake, wrong.begin, wrong.end);
   diagnostics
-      .report(Code::E0201, last ? "nothing stands behind the last entry in JSON, no `;`"
-                                : "a comma stands here in JSON, no `;`")
+      .report(Code::E0201,
+              last ? "the last entry needs no `;` in JSON" : "JSON needs a comma here, not `;`")
       .label(here)
       .fix(here, last ? "" : ",");
   return true;
@@ -288,13 +287,13 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
     diagnostics.report(Code::E0201, no_room_for(number, canonical_unit(vm::Dimension::number)))
         .label(here);
   } else if (wrong.previous == ',' && (c == '}' || c == ']')) {
-    diagnostics.report(Code::E0201, std::string("there is a comma too many before `") + c + "`")
+    diagnostics.report(Code::E0201, std::string("there is an extra comma before `") + c + "`")
         .label(span(wrong.before, wrong.before + 1))
         .fix(span(wrong.before, wrong.before + 1), "");
   } else if (mentions(mistake, "object separator") && wrong.previous == '"' && !is_space(c) &&
              c != ',') {
     diagnostics
-        .report(Code::E0201, c == '=' ? "a colon stands between a key and its value, no `=`"
+        .report(Code::E0201, c == '=' ? "a key and its value need a colon between them, not `=`"
                                       : "a colon is missing between the key and its value")
         .label(here)
         .fix(c == '=' ? here : span(wrong.before + 1, wrong.before + 1), ":");

@@ -54,9 +54,9 @@ std::size_t NameIndex::Hash::operator()(std::string_view name) const {
 
 void check_name(const Spelled& name, Diagnostics& diagnostics) {
   if (!can_be_written(name.text)) {
-    diagnostics.report(Code::E0103, "RSL cannot write this name")
+    diagnostics.report(Code::E0103, "this is not a valid name in RSL")
         .label(name.span)
-        .helps("a name begins with a letter and goes on with letters, digits and `_`");
+        .helps("a name is a letter followed by letters, digits and `_`");
   } else if (!may_name_a_part(name.text)) {
     diagnostics.report(Code::E0102, "`" + name.text + "` is a word of RSL")
         .label(name.span)

@@ -49,7 +49,7 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
   const std::string example = "\"" + member.key + "\": [\"left_arm\", \"right_arm\"]";
   if (!expect_kind(member.value, json::Kind::array, diagnostics, example)) return;
   if (member.value.items.empty())
-    diagnostics.report(Code::E0205, "a group has at least one member").label(member.value.span);
+    diagnostics.report(Code::E0205, "a group needs at least one member").label(member.value.span);
   std::set<std::size_t> members;
   for (const json::Value& item : member.value.items) {
     const auto name = read_text(item, diagnostics);

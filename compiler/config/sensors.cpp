@@ -32,7 +32,7 @@ void change_unit(const Unit& unit, Span span, ChannelConfig& channel, Diagnostic
     diagnostics
         .report(Code::E0301, "the device measures " +
                                  std::string(dimension_phrase(channel.unit->dimension)) +
-                                 ", and `" + std::string(unit.spelling) + "` is " +
+                                 ", but `" + std::string(unit.spelling) + "` is " +
                                  std::string(dimension_phrase(unit.dimension)))
         .label(span);
     return;
@@ -66,8 +66,8 @@ void read_labels(const json::Value& value, ChannelConfig& channel, Diagnostics& 
     add_label(item, known, channel, diagnostics);
   if (value.items.size() < 2 || value.items.size() > kMaxLabels)
     diagnostics
-        .report(Code::E0205, "a channel has from 2 to " + std::to_string(kMaxLabels) +
-                                 " labels, and this one has " + std::to_string(value.items.size()))
+        .report(Code::E0205, "a channel can have 2 to " + std::to_string(kMaxLabels) +
+                                 " labels, but this one has " + std::to_string(value.items.size()))
         .label(value.span);
 }
 
@@ -77,7 +77,7 @@ void read_truth(const json::Value& value, bool has_labels, ChannelConfig& channe
   channel.truth = true;
   if (!has_labels) channel.labels = {"no", "yes"};
   if (channel.labels.size() != 2)
-    diagnostics.report(Code::E0205, "a truth has two labels: the one for false, then for true")
+    diagnostics.report(Code::E0205, "a truth has two labels: for false, then for true")
         .label(value.span);
 }
 
@@ -176,7 +176,7 @@ void read_channels(const json::Value& value, const Device& device, SensorConfig&
   if (!expect_kind(value, json::Kind::object, diagnostics, example)) return;
   report_repeated_keys(value, diagnostics);
   if (value.members.empty()) {
-    diagnostics.report(Code::E0205, "a sensor has at least one channel").label(value.span);
+    diagnostics.report(Code::E0205, "a sensor needs at least one channel").label(value.span);
     return;
   }
   sensor.channels.clear();
@@ -194,7 +194,7 @@ void read_register(const json::Value& value, const Device& device, SensorConfig&
   if (!device.has_registers()) {
     diagnostics.report(Code::E0205, "a " + device.name + " has no `register`")
         .label(value.span)
-        .helps("leave it out; `input` of a channel says what that reads");
+        .helps("remove it; `input` of a channel says what it reads");
     return;
   }
   for (ChannelConfig& channel : sensor.channels)
@@ -213,7 +213,7 @@ void make_fed(SensorConfig& sensor, const json::Value* channels, Diagnostics& di
   for (const json::Member& channel : channels->members)
     for (const json::Member& key : channel.value.members)
       if (key.key == "rate")
-        diagnostics.report(Code::N0001, "this sensor is fed, not sampled: its rate is not used")
+        diagnostics.report(Code::N0001, "this sensor is fed, not sampled: its rate has no effect")
             .label(key.value.span);
 }
 
@@ -243,11 +243,11 @@ void check_rate(const json::Value* channels, const SensorConfig& sensor, Diagnos
       if (key.key == "rate")
         diagnostics
             .report(Code::E0205,
-                    fmt::format("this measures every {} ms, and {} {} ms{}", sensor.period_ms,
-                                by_echo ? "the echoes of one burst take" : "each time takes",
+                    fmt::format("this measures every {} ms, but {} {} ms{}", sensor.period_ms,
+                                by_echo ? "the echoes of one burst take" : "each measurement takes",
                                 shortest, by_echo ? " to die away" : ""))
             .label(key.value.span)
-            .helps(fmt::format("say a rate of {}Hz at most", 1000 / shortest));
+            .helps(fmt::format("use a rate of at most {}Hz", 1000 / shortest));
 }
 
 }  // namespace

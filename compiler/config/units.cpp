@@ -257,7 +257,7 @@ std::string largest(const Unit& unit) {
 }
 
 std::string no_room_for(std::string_view number, const Unit& unit) {
-  return "the robot has no room for `" + std::string(number) + "`: its numbers go from " +
+  return "the robot cannot store `" + std::string(number) + "`: its numbers go from " +
          smallest(unit) + " to " + largest(unit);
 }
 
@@ -280,10 +280,10 @@ std::string too_many_digits(std::string_view text) {
   const std::int64_t all =
       static_cast<std::int64_t>(digits.size() - zeros) + std::max<std::int64_t>(-behind, 0);
   if (all > kMaxDigits)
-    return "this number has " + std::to_string(all) + " digits, and rsc reads at most " +
+    return "this number has " + std::to_string(all) + " digits; the limit is " +
            std::to_string(kMaxDigits);
-  return "this number has " + std::to_string(behind) +
-         " digits behind the point, and rsc reads at most " + std::to_string(kMaxDecimals);
+  return "this number has " + std::to_string(behind) + " decimal places; the limit is " +
+         std::to_string(kMaxDecimals);
 }
 
 std::optional<ValuePlace> find_place(std::string_view text) {
@@ -351,7 +351,7 @@ std::string why_no_scale(Decimal number, const Unit& unit) {
       "in thousandths of `" + std::string(canonical_unit(unit.dimension).spelling) + "`";
   return "this scale is " + digits_of(numerator) + "/" + digits_of(denominator) +
          (unit.dimension == vm::Dimension::number ? " in thousandths" : " " + thousandths) +
-         ", and a robot keeps fractions up to " + digits_of(kMostNumerator) + "/" +
+         ", but a robot stores fractions up to " + digits_of(kMostNumerator) + "/" +
          digits_of(kMostDenominator);
 }
 

@@ -120,9 +120,8 @@ std::optional<std::uint16_t> milliseconds(std::int64_t ms, const json::Value& va
                                           Diagnostics& diagnostics) {
   if (ms >= 1 && ms <= UINT16_MAX) return static_cast<std::uint16_t>(ms);
   diagnostics
-      .report(Code::E0205, "this comes to " + std::to_string(ms) +
-                               " ms, and must be from 1 ms to " + std::to_string(UINT16_MAX) +
-                               " ms")
+      .report(Code::E0205, "this is " + std::to_string(ms) + " ms, but must be from 1 ms to " +
+                               std::to_string(UINT16_MAX) + " ms")
       .label(value.span);
   return std::nullopt;
 }
@@ -132,7 +131,7 @@ std::optional<std::uint16_t> milliseconds(std::int64_t ms, const json::Value& va
 std::optional<std::string> read_text(const json::Value& value, Diagnostics& diagnostics) {
   if (!expect_kind(value, json::Kind::string, diagnostics)) return std::nullopt;
   if (value.text.find('\0') != std::string::npos) {
-    diagnostics.report(Code::E0205, "a text cannot have a zero character in it").label(value.span);
+    diagnostics.report(Code::E0205, "a text cannot contain a zero character").label(value.span);
     return std::nullopt;
   }
   return value.text;
@@ -181,7 +180,7 @@ std::optional<std::int64_t> read_address(const json::Value& value, std::int64_t 
   if (meant_hex) {
     d.helps("write " + hex).fix(value.span, hex, Applicability::likely);
   } else if (!value.text.starts_with("0x") && !value.text.starts_with("0X")) {
-    d.helps("it is written as data sheets write it: \"" + written_like(high, true) + "\"");
+    d.helps("write it as data sheets do: \"" + written_like(high, true) + "\"");
   }
   return std::nullopt;
 }
@@ -207,7 +206,7 @@ std::optional<Range> read_range(const json::Value& value, const Unit& unit,
   if (!expect_kind(value, json::Kind::array, diagnostics, "\"range\": [0, 10]"))
     return std::nullopt;
   if (value.items.size() != 2) {
-    diagnostics.report(Code::E0204, "a range is a list of two: the lowest and the highest value")
+    diagnostics.report(Code::E0204, "a range is a list of two values: the lowest and the highest")
         .label(value.span);
     return std::nullopt;
   }
@@ -215,7 +214,7 @@ std::optional<Range> read_range(const json::Value& value, const Unit& unit,
   const auto high = read_quantity(value.items[1], unit, diagnostics);
   if (!low || !high) return std::nullopt;
   if (*low < *high) return Range{*low, *high};
-  diagnostics.report(Code::E0205, "the lowest value of this range is not below its highest")
+  diagnostics.report(Code::E0205, "the lowest value of this range must be below the highest")
       .label(value.span);
   return std::nullopt;
 }

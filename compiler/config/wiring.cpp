@@ -35,11 +35,11 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::cou
 
 // Suggests two pins that the board has.
 std::string help_for_echo(const Board& board) {
-  const std::string says = "an output and an input, by their names on the part";
+  const std::string says = "an output and an input, named as on the part";
   const auto output = std::ranges::find(board.outputs, true, &Board::Pins::power);
   if (output == board.outputs.end() || board.inputs.empty())
-    return "say `trigger` and `echo`: " + says;
-  return "say `\"trigger\": " + std::to_string(output->first) +
+    return "write `trigger` and `echo`: " + says;
+  return "write `\"trigger\": " + std::to_string(output->first) +
          ", \"echo\": " + std::to_string(board.inputs.front().first) + "`: " + says;
 }
 
@@ -91,9 +91,9 @@ const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnos
   if (!known && value->kind == json::Kind::string &&
       find_device(value->text, is_sensor) != nullptr) {
     diagnostics
-        .report(Code::E0204, "this must be how it is wired, and `" + value->text + "` is a device")
+        .report(Code::E0204, "this must say how it is wired, but `" + value->text + "` is a device")
         .label(value->span)
-        .helps("write `\"device\": \"" + value->text + "\"`; it says the type, too");
+        .helps("write `\"device\": \"" + value->text + "\"`; it implies the type");
     return nullptr;
   }
   const auto choice = read_choice(*value, names, diagnostics);
@@ -136,8 +136,8 @@ void WiringReader::read_pins(Fields& fields, bool two, const std::string& what, 
   const auto report = [&](const json::Value& wrong) {
     diagnostics_.report(Code::E0205, what + (two ? " has two pins" : " has one pin"))
         .label(wrong.span)
-        .helps(two ? "say `\"pins\": [3, 4]`: the first one drives it forward, the other one back"
-                   : "say `\"pin\": 3`");
+        .helps(two ? "write `\"pins\": [3, 4]`: the first drives it forward, the second backward"
+                   : "write `\"pin\": 3`");
   };
   if (const auto* wrong = fields.find(two ? "pin" : "pins")) return report(*wrong);
   const auto* value = fields.require(two ? "pins" : "pin", what);
@@ -173,7 +173,7 @@ Wiring WiringReader::read_part(const Fields& fields, const Board::Part& part) {
     if (const auto* value = fields.find(key))
       diagnostics_
           .report(Code::E0205, "the `" + part.name + "` of the board " + board_.name +
-                                   " is wired already: it has no `" + key + "`")
+                                   " is already wired: it takes no `" + key + "`")
           .label(value->span);
   const Span span = fields.find("device")->span;
   part.pin ? take_pin(*part.pin, span) : take_part(part, span);
@@ -193,7 +193,7 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
   const auto* device = fields.find("device");
   if (part != nullptr || device == nullptr) return;
   diagnostics_
-      .report(Code::E0205, "a " + device->text + " is a part of a board, and cannot be wired")
+      .report(Code::E0205, "a " + device->text + " is a part of a board, so it cannot be wired")
       .label(device->span)
       .helps("boards that have one: " + boards_with(device->text));
 }
@@ -214,8 +214,8 @@ void WiringReader::refuse_pins(const Fields& fields) {
       diagnostics_.report(Code::E0205, "a servo on a chip has no `" + std::string(key) + "`")
           .label(wrong->span)
           .helps(
-              "say `\"channel\"`, which of the chip's outputs it is, and `\"enable\"`, "
-              "the pin of the board at the chip's OE");
+              "write `\"channel\"`, the chip's output, and `\"enable\"`, the pin of the "
+              "board that is connected to the chip's OE");
 }
 
 // Requires the enable input: without it, only the bus could stop the servos.
@@ -236,7 +236,7 @@ ChipWiring WiringReader::read_chip(Fields& fields) {
   const auto pin = read_whole(*enable, 0, UINT8_MAX, diagnostics_);
   if (!place || !output || !pin) return wiring;
   if (*place == vm::kAllChipsAddress) {
-    diagnostics_.report(Code::E0205, "no PCA9685 can have this address: all of them answer at it")
+    diagnostics_.report(Code::E0205, "no PCA9685 can have this address: all of them answer to it")
         .label(address->span);
     return wiring;
   }
@@ -275,10 +275,10 @@ void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
   if (known.chip->enable == chip.enable) return;
   if (board_.has_enable(known.chip->enable)) {
     diagnostics_
-        .report(Code::E0205, name_of(chip) + " has its enable input at pin " +
+        .report(Code::E0205, name_of(chip) + " has its enable input on pin " +
                                  std::to_string(known.chip->enable))
         .label(enable.span)
-        .label(known.enable, "said here", false);
+        .label(known.enable, "set here", false);
     return;
   }
   // The enable pin in the first entry was wrong, which has been reported. It says nothing about this one.
@@ -326,7 +326,7 @@ void WiringReader::check_enable(const json::Value& value, std::uint16_t pin) {
         .helps("boards that have one: " + boards_with_enables());
   else
     report_no_pin(value, pin, " is not for the enable input of a chip",
-                  "only a pin that is high from the start on is: ", board_.enables);
+                  "only a pin that is high from the start is: ", board_.enables);
 }
 
 void WiringReader::check_safe(const ServoChip& chip, vm::Release safe, Span span) {
@@ -340,8 +340,7 @@ void WiringReader::check_safe(const ServoChip& chip, vm::Release safe, Span span
         .label(span, "`" + std::string(kReleases.at(static_cast<std::size_t>(safe))) + "`")
         .label(known.safe_span,
                "`" + std::string(kReleases.at(static_cast<std::size_t>(*known.safe))) + "`", false)
-        .helps(
-            "its enable input, which it has once, stops all of them: say the same `safe` of each");
+        .helps("its single enable input stops all of them: give each the same `safe`");
   }
 }
 
@@ -445,7 +444,7 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
       .report(Code::E0205,
               "the board " + board_.name + " has no I2C bus " + std::to_string(wiring.bus))
       .label(bus->span)
-      .helps(board_.i2c_buses == 1 ? "it has one, bus 0"
+      .helps(board_.i2c_buses == 1 ? "it has only bus 0"
                                    : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
 }
 
@@ -459,8 +458,9 @@ void WiringReader::check_line(const Fields& fields, const Wiring& wiring) {
     diagnostics_
         .report(Code::E0205, "the board " + board_.name + " has no " + line + " for a player")
         .label(span)
-        .helps(board_.serial_lines == 1 ? "it has one, `\"bus\": 1`"
-                                        : "they are 1 to " + std::to_string(board_.serial_lines));
+        .helps(board_.serial_lines == 1
+                   ? "it has only `\"bus\": 1`"
+                   : "its serial lines are 1 to " + std::to_string(board_.serial_lines));
     return;
   }
   const auto [first, added] = lines_.emplace(wiring.bus, span);
@@ -490,7 +490,7 @@ void WiringReader::check_panel(const Fields& fields, const Wiring& wiring) {
     panel_ = span;
     return;
   }
-  diagnostics_.report(Code::E0207, "a robot has one panel of lights")
+  diagnostics_.report(Code::E0207, "a robot can have only one panel of lights")
       .label(span)
       .label(*panel_, "the first one", false);
 }
@@ -498,7 +498,7 @@ void WiringReader::check_panel(const Fields& fields, const Wiring& wiring) {
 void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) {
   if (!board_.panels.empty())
     return report_no_pin(value, pin, " is not for a panel of lights",
-                         "those that are: ", board_.panels);
+                         "pins that are: ", board_.panels);
   if (board_.named == Board::Named::wrongly) return;
   diagnostics_.report(Code::E0205, "the board " + board_.name + " has no pin for a panel of lights")
       .label(value.span)
@@ -514,14 +514,15 @@ void WiringReader::check_output_pin(const json::Value& value, std::uint16_t pin,
   const bool all = those.size() == board_.outputs.size();
   report_no_pin(
       value, pin,
-      board_.has_output(pin) ? " gives pulses for servos only, no power" : " is no output",
-      all ? "its outputs are the pins " : "those that give power are the pins ", those);
+      board_.has_output(pin) ? " gives only pulses for servos, no power" : " is not an output",
+      all ? "its outputs are the pins " : "pins that give power: ", those);
 }
 
 void WiringReader::check_input(const Fields& fields, const Wiring& wiring) {
   const auto* pin = fields.find("pin");
   if (pin != nullptr && !board_.has_input(wiring.place))
-    report_no_pin(*pin, wiring.place, " is no input", "its inputs are the pins ", board_.inputs);
+    report_no_pin(*pin, wiring.place, " is not an input", "its inputs are the pins ",
+                  board_.inputs);
 }
 
 void WiringReader::check_echo(const Fields& fields, const Wiring& wiring) {
@@ -530,7 +531,8 @@ void WiringReader::check_echo(const Fields& fields, const Wiring& wiring) {
   if (trigger == nullptr || echo == nullptr) return;
   check_output_pin(*trigger, wiring.bus, true);
   if (!board_.has_input(wiring.place))
-    report_no_pin(*echo, wiring.place, " is no input", "its inputs are the pins ", board_.inputs);
+    report_no_pin(*echo, wiring.place, " is not an input", "its inputs are the pins ",
+                  board_.inputs);
 }
 
 void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
@@ -541,7 +543,7 @@ void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
         .label(pin->span)
         .helps("boards that have some: " + boards_with_analog());
   else
-    report_no_pin(*pin, wiring.place, " is no analog input", "its analog inputs are the pins ",
+    report_no_pin(*pin, wiring.place, " is not an analog input", "its analog inputs are the pins ",
                   board_.analog);
 }
 

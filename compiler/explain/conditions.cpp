@@ -51,12 +51,12 @@ std::string part(const Expr& expr) {
 std::string function(const ast::Function& node) {
   const std::string name = folded(node.name.text);
   const std::string first = part(*node.first);
-  if (name == "abs") return "the size of " + first;
+  if (name == "abs") return "the absolute value of " + first;
   if (name == "round") return first + " rounded";
   if (!node.second) return name + " of " + first;
   const std::string both = fmt::format("{} and {}", first, part(*node.second));
-  if (name == "min") return "the smaller one of " + both;
-  if (name == "max") return "the greater one of " + both;
+  if (name == "min") return "the smaller of " + both;
+  if (name == "max") return "the larger of " + both;
   return name + " of " + both;
 }
 
@@ -220,7 +220,7 @@ std::string number(const Expr& expr) {
   if (const auto* node = std::get_if<ast::ItemOf>(&expr.node))
     return fmt::format("item {} of {}", part(*node->index), node->list.text);
   if (const auto* node = std::get_if<ast::CountOf>(&expr.node))
-    return fmt::format("how many {} has", node->list.text);
+    return fmt::format("the number of items in {}", node->list.text);
   if (const auto* node = std::get_if<ast::Function>(&expr.node)) return function(*node);
   return no_number(expr);
 }

@@ -18,14 +18,14 @@ constexpr std::size_t kIndent = 2;
 
 // Readers who know how rules are evaluated make fewer mistakes.
 constexpr std::string_view kHowItWorks =
-    "How the robot works through its rules:\n"
+    "How the robot runs its rules:\n"
     "  - \"As soon as\" happens once, at the moment something becomes true, or at start if it is\n"
-    "    true already. It must stop being true before it can happen again.\n"
+    "    already true. It must stop being true before it can happen again.\n"
     "  - \"While\" goes on for as long as something is true, and stops when it is not.\n"
-    "  - An actuator does what one rule wants at a time. The rule with the higher priority gets\n"
-    "    it; what the other was doing is given up as a whole and not taken up again, except by\n"
-    "    a \"while\" that is still true.\n"
-    "  - A sensor that says nothing is unknown: rules do nothing then, safety rules stop.\n";
+    "  - Only one rule at a time uses an actuator: the one with the higher priority. It ends the\n"
+    "    whole response of the other rule, which does not resume, except for a \"while\" that\n"
+    "    is still true.\n"
+    "  - A sensor without a reading is unknown: then rules do nothing, and safety rules stop.\n";
 
 int to_number(const std::optional<ast::Name>& digits) {
   int number = 0;
@@ -49,7 +49,7 @@ public:
       if (is_own(item) || keeps_something(item))
         memory += std::visit([&](const auto& node) { return remembered(node); }, item.node);
     });
-    if (!memory.empty()) text_ += "\nWhat has a name:\n" + memory;
+    if (!memory.empty()) text_ += "\nNames:\n" + memory;
     tell_each<ast::Check>();
     tell_each<ast::Limit>();
     tell_each<ast::Safety>();
@@ -103,14 +103,14 @@ private:
 
   // ---- names
   static std::string remembered(const ast::Use& node) {
-    return fmt::format("  What the module {} offers can be used here.\n", node.module.text);
+    return fmt::format("  The program uses the module {}.\n", node.module.text);
   }
   static std::string remembered(const ast::Let& node) {
     return fmt::format("  {} stands for {}.\n", node.name.text, number(*node.value));
   }
   static std::string remembered(const ast::Remember& node) {
     return fmt::format("  {} is a number that the robot remembers{}, {} at first.\n",
-                       node.name.text, node.kept ? ", also when it is switched off" : "",
+                       node.name.text, node.kept ? ", even when it is switched off" : "",
                        number(*node.value));
   }
   static std::string remembered(const ast::State& node) {
@@ -136,7 +136,7 @@ private:
     std::string text = fmt::format("  {} is a feeling from {} to {}, {} at first.", node.name.text,
                                    number(*node.from), number(*node.to), number(*node.start));
     if (node.fades_to && node.fades_over) {
-      text += fmt::format(" Left alone it fades to {}: after {} it is nearly there.",
+      text += fmt::format(" Left alone, it fades to {}: after {} it is almost there.",
                           number(*node.fades_to), number(*node.fades_over));
     }
     return text + "\n";
@@ -173,15 +173,15 @@ private:
                        number(*node.operand)));
     for (const ast::Band& band : node.bands)
       say(kIndent, fmt::format("{}: {}", band.label.text, range(band)));
-    if (node.bands.size() > 1) say(kIndent, "The first that fits from the top is the one.");
+    if (node.bands.size() > 1) say(kIndent, "The first one from the top that fits counts.");
     if (node.margin) {
-      say(kIndent, fmt::format("One is left only when the value is {} past its limit, so that it "
+      say(kIndent, fmt::format("It changes only when the value is {} past a limit, so that it "
                                "does not flicker.",
                                number(*node.margin)));
     }
     if (node.smooth) {
-      say(kIndent, fmt::format("The middle one of the readings of the last {} counts, so that a "
-                               "single wrong reading does not.",
+      say(kIndent, fmt::format("It uses the median of the readings of the last {}, so that a "
+                               "single wrong reading does not count.",
                                number(*node.smooth)));
     }
   }
@@ -193,16 +193,14 @@ private:
       say(kIndent, fmt::format("{} never moves faster than {}, whatever a rule asks for.",
                                node.actuator.text, limit));
     } else {
-      say(kIndent,
-          fmt::format("While {0} {1} is more than {2}, and also while it is not known, {0} "
-                      "is stopped.",
-                      node.actuator.text, node.channel.text, limit));
+      say(kIndent, fmt::format("While {0} {1} is more than {2}, or is unknown, {0} "
+                               "is stopped.",
+                               node.actuator.text, node.channel.text, limit));
     }
   }
 
   void tell(const ast::Safety& node, Span span) {
-    say(0, fmt::format("\nSAFETY {} ({}). Nothing is more important:", node.name.text,
-                       place_of(span)));
+    say(0, fmt::format("\nSAFETY {} ({}), above all other rules:", node.name.text, place_of(span)));
     text_ += safety_text(node, defines_, kIndent);
   }
 
@@ -270,7 +268,7 @@ private:
       say(kIndent, line);
     if (several_rules && !party.actuators.empty()) {
       say(kIndent,
-          "Of its own rules, the later one interrupts the earlier one if both need the "
+          "Among its own rules, the later one interrupts the earlier one if both need the "
           "same actuator.");
     }
   }
@@ -290,11 +288,10 @@ private:
 
   void tell(const ast::Rule& node, Span span) {
     const int priority = to_number(node.modifiers.priority);
-    say(0, fmt::format("\nA rule of its own, {}:",
-                       priority > 0
-                           ? fmt::format("priority {}", priority)
-                           : std::string("less important than every behaviour with a priority "
-                                         "and than such rules before it")));
+    say(0, fmt::format("\nA rule outside any BEHAVIOR, {}:",
+                       priority > 0 ? fmt::format("priority {}", priority)
+                                    : std::string("less important than everything with a priority "
+                                                  "and than earlier rules without one")));
     tell_meetings(false);
     text_ += rule_text(node, place_of(span), defines_, kIndent);
   }

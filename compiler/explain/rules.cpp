@@ -24,26 +24,25 @@ public:
     body(*rule.else_block);
     has_else_ = true;
     say(kRuleIndent,
-        "Each side interrupts the other. At start, as soon as it is known which side is "
-        "right, that side is done once.");
+        "Each side interrupts the other. At start, the side that applies runs once, as soon "
+        "as that is known.");
     say(kRuleIndent,
-        "If something more important is using what a side needs, that side is done as soon "
-        "as all of it is free, if it is still the right one.");
+        "If something more important is using what a side needs, that side runs as soon as "
+        "all of it is free, if it still applies.");
   }
   void write(const ast::WhileRule& rule) {
     see(*rule.condition);
     title(while_true(*rule.condition));
     body(rule.body);
     say(kRuleIndent,
-        "It stops at once when that is no longer true. If it gets to its end before, it "
+        "It stops immediately when that is no longer true. If it finishes before that, it "
         "starts again from the top.");
   }
   void write(const ast::EveryRule& rule) {
-    title(rule.to ? fmt::format("Every {} to {}, as chance has it", number(*rule.period),
-                                number(*rule.to))
+    title(rule.to ? fmt::format("Every {} to {}, at random", number(*rule.period), number(*rule.to))
                   : fmt::format("Every {}", number(*rule.period)));
     body(rule.body);
-    say(kRuleIndent, "If it is still busy when its time comes, that time is left out.");
+    say(kRuleIndent, "If it is still running when its time comes, that time is skipped.");
   }
   void write(const ast::AtStartRule& rule) {
     title("Once, when the program starts");
@@ -56,7 +55,7 @@ public:
                                    "limit, so that it does not flicker{}.",
                                    one_comparison_ ? "O" : "Each comparison in it, o",
                                    one_comparison_ ? "it " : "", number(*modifiers.margin),
-                                   has_not_ ? "; NOT turns round what that gives" : ""));
+                                   has_not_ ? "; NOT reverses the result" : ""));
     }
     if (modifiers.cooldown) {
       say(kRuleIndent, fmt::format("After {} has started, {} does not start again for {}.",
@@ -65,13 +64,13 @@ public:
     }
     if (modifiers.restarting) {
       say(kRuleIndent,
-          "If it becomes true again while this is still going on, it starts again from "
+          "If it becomes true again while this is still running, it starts again from "
           "the top.");
     }
     if (modifiers.waiting && !has_else_) {  // a rule with ELSE always waits, for any time
       say(kRuleIndent,
           fmt::format("If something more important is using what it needs, it waits for "
-                      "that, but at most {}.",
+                      "at most {}.",
                       number(*modifiers.waiting)));
     }
   }
@@ -79,11 +78,11 @@ public:
   void write(const ast::Safety& safety) {
     see(*safety.condition);
     const std::string condition = while_true(*safety.condition);
-    say(0, fmt::format("{}, and also while it is not known:", condition));
+    say(0, fmt::format("{}, or while that is unknown:", condition));
     body(safety.body);
     write(safety.modifiers);
     say(0, safety.resume ? fmt::format("It lets go {}.", lower_first(as_soon_as(*safety.resume)))
-                         : "It does not let go by itself: a person must do that from the host.");
+                         : "It does not let go on its own: a person must do that from the host.");
   }
 
   std::string text;

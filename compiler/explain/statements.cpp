@@ -84,7 +84,7 @@ private:
     if (node.arguments.empty() && defines_.contains(folded(node.verb.text))) {
       line(fmt::format("do {} (see DEFINE {})", node.verb.text, node.verb.text));
     } else if (folded(node.verb.text) == "restart" && node.arguments.size() == 1) {
-      line(fmt::format("let {} begin at 0 again", value_of(node.arguments.front())));
+      line(fmt::format("set {} back to 0", value_of(node.arguments.front())));
     } else {
       line(command(node));
     }
@@ -114,7 +114,7 @@ private:
   void write(const ast::Wait& node) { line("wait " + number(*node.duration)); }
   void write(const ast::WaitUntil& node) {
     line(fmt::format("wait until {}{}", is_true(*node.condition),
-                     node.within ? ", but at most " + number(*node.within) : ""));
+                     node.within ? ", for at most " + number(*node.within) : ""));
   }
   void write(const ast::Then&) { line("wait until everything started so far is done"); }
 
@@ -145,8 +145,8 @@ private:
   void write(const ast::PickOne& node) {
     const bool weighted = std::ranges::any_of(
         node.options, [](const ast::Option& option) { return option.weight != nullptr; });
-    line(weighted ? "one of these, picked at random, the more often the larger its number:"
-                  : "one of these, picked at random, each as often as the others:");
+    line(weighted ? "one of these, picked at random, more often the larger its number:"
+                  : "one of these, picked at random, all equally likely:");
     indent_ += kStatementIndent;
     for (const ast::Option& option : node.options) {
       line(option.weight ? fmt::format("option {}:", number(*option.weight)) : "option:");

@@ -24,7 +24,7 @@ void Behaviors::add(const ast::Behavior& behavior, std::vector<ir::Rule> rules) 
   if (rules.size() > kMaxRules)
     diagnostics_
         .report(Code::E0407, behavior.name.shown() + " has " + std::to_string(rules.size()) +
-                                 " rules, and a behaviour takes " + std::to_string(kMaxRules))
+                                 " rules; the limit is " + std::to_string(kMaxRules))
         .label(behavior.name.span);
   ir::Behavior result;
   result.priority = static_cast<std::int16_t>(priority ? priority->number : 0);
@@ -54,9 +54,8 @@ void Behaviors::report_count() {
   if (!one_too_many_) return;
   diagnostics_
       .report(Code::E0407, "the program has " + std::to_string(behaviors_.size()) +
-                               " behaviours, and a robot takes " +
-                               std::to_string(vm::kMaxBehaviors) +
-                               "; a rule outside a BEHAVIOR counts as one")
+                               " behaviours; the limit is " + std::to_string(vm::kMaxBehaviors) +
+                               " (a rule outside a BEHAVIOR counts as one)")
       .label(*one_too_many_, "this is one too many");
 }
 
@@ -80,7 +79,7 @@ std::optional<Behaviors::Numbered> Behaviors::priority_of(const ast::Behavior& b
     if (in_json) return Numbered{*config->priority, config->priority_span, false};
     diagnostics_.report(Code::E0405, "the behaviour " + behavior.name.shown() + " has no priority")
         .label(behavior.name.span)
-        .helps("write `PRIORITY` and a number from 1 to 99 behind its name");
+        .helps("write `PRIORITY` and a number from 1 to 99 after its name");
     return std::nullopt;
   }
   const auto written = written_priority(*behavior.priority);
@@ -91,7 +90,7 @@ std::optional<Behaviors::Numbered> Behaviors::priority_of(const ast::Behavior& b
                                  std::to_string(*config->priority) + " in robot.json")
         .label(written->span)
         .label(config->priority_span, "the other priority", false)
-        .helps("give it in one place");
+        .helps("give it in one place only");
   return written;
 }
 

@@ -62,9 +62,9 @@ std::vector<ir::Command> Commands::translate(const ast::Command& command,
   if (command.with) {
     diagnostics_
         .report(Code::E0505,
-                "`WITH` gives values to a DEFINE, and " + command.verb.shown() + " is none")
+                "`WITH` gives values to a DEFINE, and " + command.verb.shown() + " is not one")
         .label(*command.with)
-        .helps("say it with `TO`, `BY`, `AT`, `OVER`, `FOR` or `TIMES`");
+        .helps("use `TO`, `BY`, `AT`, `OVER`, `FOR` or `TIMES` instead");
     return {};
   }
   if (!names_.is_verb(command.verb.text)) {
@@ -151,13 +151,13 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
     names.reserve(able.size());
     for (const std::size_t actuator : able)
       names.push_back(robot_.actuators[actuator].name.text);
-    d.helps(list_names(names) + " know " + command.verb.shown());
+    d.helps("actuators that know " + command.verb.shown() + ": " + list_names(names));
     return;
   }
   const bool sensor = names_.find_sensor(first->name.text).has_value();
   Diagnostic& d =
       diagnostics_
-          .report(Code::E0501, sensor ? first->name.shown() + " is a sensor, no actuator"
+          .report(Code::E0501, sensor ? first->name.shown() + " is a sensor, not an actuator"
                                       : "there is no actuator " + first->name.shown())
           .label(first->name.span);
   if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
@@ -184,7 +184,7 @@ bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
   both.end = second->name.span.end;
   const std::string better =
       "(" + std::string(word->name.text) + " " + std::string(second->name.text) + ")";
-  diagnostics_.report(Code::E0505, "a value of two words stands in brackets here")
+  diagnostics_.report(Code::E0505, "a value of two words needs brackets here")
       .label(both)
       .helps("write `" + better + "`")
       .fix(both, better);
@@ -197,7 +197,7 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
   bool good = true;
   const std::size_t first_part = command.arguments.size() - command.parts;
   if (named_by == first_part) {
-    Diagnostic& d = diagnostics_.report(Code::E0505, "no comma stands behind the actuator")
+    Diagnostic& d = diagnostics_.report(Code::E0505, "a comma does not belong after the actuator")
                         .label(command.arguments[named_by].span);
     if (!std::holds_alternative<ast::Text>(command.arguments[named_by + 1].value))
       d.helps("write a command for each actuator, or give them a group in robot.json");
@@ -235,9 +235,9 @@ Commands::Given Commands::put_together(const ast::Command& command, std::size_t 
                has_decimal_comma(part, command.arguments[i + 1])) {
       return given;
     } else if (part.preposition != ast::Preposition::none) {
-      diagnostics_.report(Code::E0505, "a comma stands between the parts of a text")
-          .label(part.span, "this is none")
-          .helps("a text with its parts stands last: `FOR 2s \"You have\", points`");
+      diagnostics_.report(Code::E0505, "the parts of a text are separated by commas")
+          .label(part.span, "this is not part of the text")
+          .helps("put a text and its parts last: `FOR 2s \"You have\", points`");
       return given;
     } else {
       good = text.add(part) && good;
@@ -283,7 +283,7 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
       diagnostics_.report(Code::E0501, "there is no actuator " + name.shown()).label(name.span);
   const VariableName* const timer = names_.find_variable(name.text);
   if (timer != nullptr && timer->kind == vm::VariableKind::timer) {
-    d.helps(name.shown() + " is a TIMER, which goes on; `RESTART " + std::string(name.text) +
+    d.helps(name.shown() + " is a TIMER, which never stops; `RESTART " + std::string(name.text) +
             "` sets it back to 0");
     return std::nullopt;
   }
@@ -298,7 +298,7 @@ Typed Commands::evaluate_number(const ast::Argument& argument) {
     return amount->value ? expressions_.number(*amount->value) : Typed{};
   if (const auto* word = std::get_if<ast::Word>(&argument.value))
     return expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
-  diagnostics_.report(Code::E0505, "a text cannot stand here, a number can").label(argument.span);
+  diagnostics_.report(Code::E0505, "this must be a number, not a text").label(argument.span);
   return {};
 }
 
@@ -373,7 +373,7 @@ bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& n
   const bool has_sign = param == vm::Param::to || param == vm::Param::by;
   if (has_sign || (value > 0 || (!positive && value == 0))) {
     if (!counts || value % vm::kScale == 0) return true;
-    diagnostics.report(Code::E0506, "TIMES counts in whole numbers").label(number.span);
+    diagnostics.report(Code::E0506, "TIMES must be a whole number").label(number.span);
     return false;
   }
   diagnostics
@@ -397,7 +397,7 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
   Diagnostic& d = diagnostics
                       .report(Code::E0301,
                               "`" + spelling(param) + "` of " + actuator.name.shown() + " is " +
-                                  std::string(dimension_phrase(unit.dimension)) + ", and this is " +
+                                  std::string(dimension_phrase(unit.dimension)) + ", but this is " +
                                   std::string(dimension_phrase(number.dimension())))
                       .label(number.digits.empty() ? number.span : number.unit_span)
                       .label(actuator.name.span, "the actuator", false);
@@ -487,7 +487,7 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     return false;
   }
   if (is_given(result, known->param)) {
-    report_twice(span, "what `" + known->name + "` says", to.diagnostics);
+    report_twice(span, "what `" + known->name + "` sets", to.diagnostics);
     return false;
   }
   if (known->param == vm::Param::at && known->value > to.actuator.speed_limit) {
@@ -515,7 +515,7 @@ void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, 
   std::vector<std::string> verbs;
   for (const VerbConfig& verb : to.actuator.verbs)
     if (verb.goes_with(word)) verbs.push_back(verb.name);
-  if (!verbs.empty()) d.helps("`" + word.name + "` belongs to " + list_names(verbs));
+  if (!verbs.empty()) d.helps("`" + word.name + "` goes with " + list_names(verbs));
 }
 
 // Does a number or a value in brackets follow, as after TO, BY, AT, OVER and FOR?
@@ -553,12 +553,11 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
     doubt_keyword(d);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
   if (names_.find_list(word.name.text) != nullptr)
-    d.helps("it is a LIST; write which of its texts: `ANY " + std::string(word.name.text) + "`");
+    d.helps("it is a LIST; choose one of its texts: `ANY " + std::string(word.name.text) + "`");
   if (d.help.empty() && to.verb.texts == Texts::listed)
     help_with_files(to, d);
   else if (d.help.empty() && to.verb.texts == Texts::any)
-    d.helps("words that are said or played stand in quotes: `\"" + std::string(word.name.text) +
-            "\"`");
+    d.helps("put words to say or play in quotes: `\"" + std::string(word.name.text) + "\"`");
 }
 
 namespace {
@@ -619,18 +618,18 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
     to.diagnostics
-        .report(Code::E0505, to.actuator.name.shown() + " says no numbers: it plays files")
+        .report(Code::E0505, to.actuator.name.shown() + " cannot say numbers: it plays files")
         .label(given.text_span)
-        .helps("a device that says any text can: \"speaker\"");
+        .helps("the device \"speaker\" can: it says any text");
     return false;
   }
   if (given.values.size() > vm::kTextParams.size()) {
     to.diagnostics
         .report(Code::E0407, "this text has " + std::to_string(given.values.size()) +
-                                 " numbers, and one that is said takes at most " +
+                                 " numbers; `" + verb + "` takes at most " +
                                  std::to_string(vm::kTextParams.size()))
         .label(given.text_span)
-        .helps("say the rest with another `" + verb + "`");
+        .helps("put the rest in another `" + verb + "`");
     return false;
   }
   for (std::size_t i = 0; i < given.values.size(); ++i) {
@@ -652,20 +651,19 @@ void Commands::report_not_taken(const Recipient& to, const Given& given) {
       given.argument->preposition == ast::Preposition::none && given.param == vm::Param::by;
   if (alone && to.verb.texts == Texts::listed) {
     Diagnostic& d =
-        to.diagnostics.report(Code::E0505, verb + " takes the name of a file, no number")
-            .label(span);
+        to.diagnostics.report(Code::E0505, verb + " takes a file name, not a number").label(span);
     return help_with_files(to, d);
   }
   Diagnostic& d =
       to.diagnostics
-          .report(Code::E0505, alone ? "the word in front of this number is missing"
+          .report(Code::E0505, alone ? "the word before this number is missing"
                                      : verb + " does not take `" + spelling(given.param) + "`")
           .label(span);
   const bool place =
       alone && to.verb.has(vm::Param::to) && !given.number.is_bare() &&
       given.number.dimension() == param_unit(to.actuator, vm::Param::to, &to.verb).dimension;
   if (place)
-    d.helps(verb + " takes a place or a strength with `TO`")
+    d.helps(verb + " takes a position or a power with `TO`")
         .fix({span.file, span.begin, span.begin}, "TO ", Applicability::likely);
   else
     d.helps(taken_by(to.verb));

@@ -95,7 +95,8 @@ void lint_margin(ast::Relation relation, const Typed& left, const Typed& right, 
   if (!stays) return;
   Diagnostic& d =
       diagnostics
-          .report(Code::W0210, "once this is true, it stays true: nothing is past it by the MARGIN")
+          .report(Code::W0210,
+                  "once this is true, it stays true: no value gets past it by the MARGIN")
           .label(margin.span);
   label_range(d, left);
   label_range(d, right);
@@ -103,7 +104,7 @@ void lint_margin(ast::Relation relation, const Typed& left, const Typed& right, 
 
 void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics) {
   if (value.high - value.low >= by.code.constant) return;
-  label_range(diagnostics.report(Code::W0210, "this is never true: it cannot change by so much")
+  label_range(diagnostics.report(Code::W0210, "this is never true: it cannot change by that much")
                   .label(by.span),
               value);
 }
@@ -295,13 +296,13 @@ void lint_logic(ast::LogicOp op, const Expression& left, const Expression& right
     Diagnostic& d =
         diagnostics
             .report(Code::W0210,
-                    all ? "this is never true: " + name + " is never all of this at once"
-                        : "this is always true: " + name + " is always one of these")
+                    all ? "this is never true: " + name + " can never meet all these conditions"
+                        : "this is always true: " + name + " always meets one of these conditions")
             .label(span);
     if (all)
-      d.helps("to ask whether it is one of them, write OR");
+      d.helps("to test whether it is one of them, write OR");
     else if (!left_by(second, side, true, left_by(first, side, true, range)).empty())
-      d.helps("to ask whether it is all of them, write AND");
+      d.helps("to test whether it is all of them, write AND");
     return;
   }
 }
@@ -342,7 +343,7 @@ bool offer_is(const ast::Expr& condition, Diagnostic& diagnostic) {
   if (words.empty()) return false;
   const Span between{condition.span.file, becomes->value->span.end, becomes->label.span.begin};
   diagnostic
-      .helps("IS asks what it is as long as it lasts: `" + words + " IS " +
+      .helps("use IS for something that lasts: `" + words + " IS " +
              std::string(becomes->label.text) + "`")
       .fix(between, " IS ", Applicability::likely);
   return true;
@@ -354,15 +355,16 @@ void lint_held(const ast::Expr& condition, const Expression& code, Diagnostics& 
   if (!is_moment(code)) return;
   Diagnostic& d =
       diagnostics
-          .report(Code::W0220, "this is true for a moment only, and FOR asks whether it has lasted")
+          .report(Code::W0220,
+                  "this is true only for a moment, so it never lasts as long as FOR requires")
           .label(condition.span);
   if (offer_is(condition, d)) return;
   const auto* const changes = std::get_if<ast::Changes>(&condition.node);
   const std::string words = changes != nullptr ? words_of(changes->value) : "";
   if (!words.empty())
-    d.helps("to ask whether it has stayed the same, write NOT in front: `NOT (" + words +
+    d.helps("to test whether it has stayed the same, write NOT: `NOT (" + words +
             " CHANGES) FOR …`");
-  d.helps("to do something later, leave FOR out, and begin the response with a WAIT");
+  d.helps("to act later, remove FOR and begin the response with a WAIT");
 }
 
 void lint_while(const ast::Rule& rule, const ast::Expr& condition, const Expression& code,
@@ -370,10 +372,11 @@ void lint_while(const ast::Rule& rule, const ast::Expr& condition, const Express
   if (!is_moment(code)) return;
   Diagnostic& d =
       diagnostics
-          .report(Code::W0220, "this is true for a moment only: WHILE ends its response at once")
+          .report(Code::W0220,
+                  "this is true only for a moment: WHILE would end its response immediately")
           .label(condition.span);
   const bool offered = offer_is(condition, d);
-  d.helps("WHEN runs the whole response at each such moment");
+  d.helps("WHEN runs the whole response each time");
   constexpr std::uint32_t kLength = 5;  // of WHILE
   if (!offered)
     d.fix({rule.span.file, rule.span.begin, rule.span.begin + kLength}, "WHEN",

@@ -32,7 +32,7 @@ Diagnostic& report_word(const Typed& word, std::string_view wanted, Diagnostics&
   return diagnostics
       .report(Code::E0306, "`" + word.source + "` is a word, not " + std::string(wanted))
       .label(word.span)
-      .helps("ask for it with IS: it is " + list_names(*word.labels, "or"));
+      .helps("test it with IS: it is " + list_names(*word.labels, "or"));
 }
 
 namespace {
@@ -75,9 +75,9 @@ bool Expressions::asks_nothing(const ast::Logic& node) {
   } else {
     return false;
   }
-  Diagnostic& d = diagnostics_.report(Code::E0302, "this asks nothing by itself")
+  Diagnostic& d = diagnostics_.report(Code::E0302, "this is not a condition on its own")
                       .label(node.right->span)
-                      .helps("say again what is asked: `" + question + "`");
+                      .helps("repeat what is tested: `" + question + "`");
   if (question.front() != ' ' && node.op == ast::LogicOp::or_ && (is == nullptr || !is->negated))
     d.fix(node.right->span, question, Applicability::likely);
   return true;
@@ -93,7 +93,7 @@ void Expressions::report_word_comparison(const ast::Comparison& node, const Type
   if (!same && node.relation != ast::Relation::not_equal) return;
   const std::string is = same ? "IS" : "IS NOT";
   if (known) {
-    d.help.back() = "ask for it with IS: `" + word.source + " " + is + " " + words + "`";
+    d.help.back() = "test it with IS: `" + word.source + " " + is + " " + words + "`";
     d.fix(node.relation_span, is);
   } else if (!truth.empty() && same) {
     const Span behind{node.relation_span.file, node.relation_span.begin, node.right->span.end};
@@ -128,8 +128,8 @@ Typed Expressions::label_test(Operation operation, const ast::Expr& value, const
     Diagnostic& d =
         diagnostics_
             .report(Code::E0306, word.is_number()
-                                     ? "this is a number, and " + label.shown() + " is a word"
-                                     : "this is a condition, and " + label.shown() + " is a word")
+                                     ? "this is a number, but " + label.shown() + " is a word"
+                                     : "this is a condition, but " + label.shown() + " is a word")
             .label(value.span)
             .label(label.span, "the word", false);
     if (word.code.operation == Operation::input)
@@ -216,11 +216,10 @@ Typed Expressions::condition(const ast::Expr& expr, const ast::Expr* margin) {
   Typed result = condition(expr);
   margin_ = nullptr;
   if (result.type == Type::condition && !open.used)
-    diagnostics_
-        .report(Code::E0409, "this condition has no comparison that the MARGIN could belong to")
+    diagnostics_.report(Code::E0409, "this condition has no comparison that a MARGIN applies to")
         .label(margin->span)
-        .helps(reads_time(result.code) ? "a TIMER does not tremble, so it needs none"
-                                       : "a MARGIN goes with `<`, `>`, `<=`, `>=` or IS BETWEEN, "
+        .helps(reads_time(result.code) ? "a TIMER does not flicker, so it needs no MARGIN"
+                                       : "a MARGIN applies to `<`, `>`, `<=`, `>=` and IS BETWEEN, "
                                          "in the same kind of unit");
   return result;
 }
@@ -257,8 +256,7 @@ Typed Expressions::of(const ast::IsBetween& node, Span span) {
       !unify(same, high, "this compares {} with {}", false, diagnostics_))
     return make_nothing(span);
   if (low.low > high.high) {
-    diagnostics_.report(Code::E0509, "BETWEEN goes from the smaller number to the larger one")
-        .label(span);
+    diagnostics_.report(Code::E0509, "BETWEEN takes the smaller number first").label(span);
     return make_nothing(span);
   }
   if (!is_given()) lint_between(value, low, high, span, diagnostics_);

@@ -89,7 +89,7 @@ void Statements::add(const ast::Call& node, Span span, ir::Block& result) {
   if (diagnostics_.may_search(names_.defines().size()))
     did_you_mean(d, node.name.span, node.name.text, names_.define_names());
   if (d.help.empty() && names_.is_verb(node.name.text))
-    d.helps(node.name.shown() + " is a verb: what it does stands behind it without WITH");
+    d.helps(node.name.shown() + " is a verb: write its values after it, without WITH");
 }
 
 // Runs the DEFINE that was passed for a parameter.
@@ -119,7 +119,7 @@ bool Statements::may_run(const DefineName& name, Span use) {
   if (open_.size() < kMaxNestedDefines) return true;
   diagnostics_
       .report(Code::E0407, "DEFINEs use each other more than " + std::to_string(kMaxNestedDefines) +
-                               " levels deep, the most that rsc follows")
+                               " levels deep, the most that rsc allows")
       .label(use);
   return false;
 }
@@ -130,8 +130,8 @@ std::optional<Bindings> Statements::bind(const DefineName& name,
   const auto& parameters = name.define->parameters;
   if (parameters.size() != arguments.size()) {
     Diagnostic& d = diagnostics_.report(
-        Code::E0411, name.define->name.shown() + " wants " + counted(parameters.size()) +
-                         ", and is given " + std::to_string(arguments.size()));
+        Code::E0411, name.define->name.shown() + " takes " + counted(parameters.size()) +
+                         ", but is given " + std::to_string(arguments.size()));
     d.label(span).label(name.span, "defined here", false);
     if (!parameters.empty())
       d.helps("write `" + std::string(name.define->name.text) + " WITH` and a value for " +

@@ -49,7 +49,7 @@ Typed Expressions::number_of(Typed result) {
     return make_nothing(result.span);
   }
   if (result.type != Type::condition) return result;
-  diagnostics_.report(Code::E0302, "this is a condition, and a number is needed here")
+  diagnostics_.report(Code::E0302, "this is a condition, but a number is needed here")
       .label(result.span);
   return make_nothing(result.span);
 }
@@ -98,11 +98,11 @@ Typed Expressions::operand(const ast::Operand& operand, Span span) {
       names_.find_list(operand.channel ? operand.channel->text : operand.name.text);
   if (list != nullptr && !names_.find_sensor(operand.name.text)) {
     diagnostics_
-        .report(Code::E0306, list->list->name.shown() + " is a LIST, and a number is needed")
+        .report(Code::E0306, list->list->name.shown() + " is a LIST, but a number is needed")
         .label(span)
         .label(list->list->name.span, "the LIST", false)
         .helps(list->numbers
-                   ? "write which one: `ITEM 1 OF " + std::string(list->list->name.text) + "`"
+                   ? "say which number: `ITEM 1 OF " + std::string(list->list->name.text) + "`"
                    : "it holds texts; `COUNT OF " + std::string(list->list->name.text) +
                          "` is a number");
     return make_nothing(span);
@@ -141,7 +141,7 @@ std::string kind_of(const Binding& binding) {
 void Expressions::report_given(const Binding& binding, const ast::Name& name,
                                std::string_view wanted) {
   diagnostics_
-      .report(Code::E0306, name.shown() + " is given " + kind_of(binding) + ", and " +
+      .report(Code::E0306, name.shown() + " is given " + kind_of(binding) + ", but " +
                                std::string(wanted) + " is needed")
       .label(name.span)
       .label(binding.span, "given here", false);
@@ -187,8 +187,8 @@ Typed Expressions::variable(VariableName& name, Span span) {
     return make_condition(make_unary(Operation::changed, std::move(code)), span);
   if (!name.ready) {
     diagnostics_
-        .report(Code::E0305, name.name.shown() + " changes while the program runs, and this " +
-                                 "must be known before")
+        .report(Code::E0305, name.name.shown() + " changes while the program runs, but this " +
+                                 "must be known beforehand")
         .label(span);
     return make_nothing(span);
   }
@@ -217,7 +217,7 @@ Typed Expressions::constant(ConstantName& name, const ast::Operand& operand, Spa
   if (open_.size() == kMaxNestedLets) {
     diagnostics_
         .report(Code::E0407, "LETs use each other more than " + std::to_string(kMaxNestedLets) +
-                                 " levels deep, the most that rsc follows")
+                                 " levels deep, the most that rsc allows")
         .label(span);
     return make_nothing(span);
   }
@@ -238,7 +238,7 @@ const Typed& Expressions::value_of(ConstantName& name) {
     if (result.is_number() && !result.is_constant()) {
       diagnostics_.report(Code::E0305, "the value of a LET must be known before the program runs")
           .label(name.let->value->span)
-          .helps("write this where it is needed, or keep it: with a REMEMBER and `SET`");
+          .helps("write this where you need it, or store it in a REMEMBER with `SET`");
       result = make_nothing(result.span);
     }
   }
@@ -382,7 +382,7 @@ Typed Expressions::product(const ast::Arithmetic& node, Typed left, Typed right,
     unit = &plain;
   } else if (!left_plain && !right_plain) {
     report_mismatch(left, right, "this multiplies {} by {}", diagnostics_)
-        .helps("one side of a product must be a plain number");
+        .helps("one side of `*` must be a plain number");
     return make_nothing(span);
   }
   return combine(node.op, std::move(left), std::move(right), unit, span);
@@ -412,9 +412,9 @@ Typed Expressions::fold(const Typed& left, const Typed& right, Typed result) {
         result.unit == nullptr ? canonical_unit(vm::Dimension::number) : *result.unit;
     diagnostics_
         .report(Code::E0304, value > 0 ? "the result of this is above " + largest(unit) +
-                                             ", the largest number on the robot"
+                                             ", the largest number that the robot can store"
                                        : "the result of this is below " + smallest(unit) +
-                                             ", the smallest number on the robot")
+                                             ", the smallest number that the robot can store")
         .label(result.span);
     return make_nothing(result.span);
   }
@@ -434,8 +434,7 @@ Typed Expressions::of(const ast::Random& node, Span span) {
   if (!unify(low, high, "this draws a number between {} and {}", false, diagnostics_))
     return make_nothing(span);
   if (low.low > high.high) {
-    diagnostics_.report(Code::E0509, "RANDOM goes from the smaller number to the larger one")
-        .label(span);
+    diagnostics_.report(Code::E0509, "RANDOM takes the smaller number first").label(span);
     return make_nothing(span);
   }
   Typed result;
@@ -458,7 +457,7 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
       diagnostics
           .report(Code::E0301, "`" + wanted.source + "` is " +
                                    std::string(dimension_phrase(wanted.unit->dimension)) +
-                                   ", and this is " +
+                                   ", but this is " +
                                    std::string(dimension_phrase(number.dimension())))
           .label(number.digits.empty() ? number.span : number.unit_span);
   if (number.digits.empty()) return;
@@ -495,7 +494,7 @@ std::optional<Typed> Expressions::constant(const ast::Expr& expr, std::string_vi
   if (result.is_constant()) return result;
   diagnostics_.report(Code::E0305, std::string(what) + " must be known before the program runs")
       .label(expr.span)
-      .helps("write a number, or the name of a LET");
+      .helps("write a number or the name of a LET");
   return std::nullopt;
 }
 
@@ -505,7 +504,7 @@ std::optional<Typed> Expressions::constant_amount(const ast::Expr& expr, const W
   if (result.is_constant()) return result;
   diagnostics_.report(Code::E0305, "this must be known before the program runs")
       .label(expr.span)
-      .helps("write a number, or the name of a LET");
+      .helps("write a number or the name of a LET");
   return std::nullopt;
 }
 
@@ -525,7 +524,7 @@ std::optional<vm::Value> Expressions::constant_duration(const ast::Expr& expr,
   diagnostics_
       .report(Code::E0305, "`" + std::string(what) + "` must be known before the program runs")
       .label(expr.span)
-      .helps("write a number, or the name of a LET");
+      .helps("write a number or the name of a LET");
   return std::nullopt;
 }
 

@@ -92,7 +92,7 @@ public:
   const ChooseNumber* set_choice(const ChooseNumber* choose);
   // Reports a TIMER in a value that is evaluated only when something else changes. False if there is one.
   bool stands_still(const Expression& value, Span span, std::string_view where);
-  // Reports "`who` is given a number, and an actuator is needed".
+  // Reports "`who` is given a number, but an actuator is needed".
   void report_given(const Binding& binding, const ast::Name& name, std::string_view wanted);
 
 private:

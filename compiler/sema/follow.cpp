@@ -53,7 +53,7 @@ bool fit_margin(const ActuatorConfig& actuator, Typed& number, Diagnostics& diag
   if (number.dimension() != unit.dimension) {
     diagnostics
         .report(Code::E0301, "`MARGIN` is " + std::string(dimension_phrase(unit.dimension)) +
-                                 " here, and this is " +
+                                 " here, but this is " +
                                  std::string(dimension_phrase(number.dimension())))
         .label(number.span)
         .label(actuator.name.span, "the actuator", false);
@@ -103,19 +103,19 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate_followed(const as
   expressions_.set_choice(choice);
   expressions_.set_following(before);
   if (!lost) return given;
-  diagnostics_.report(Code::E0407, "what this FOLLOW follows cannot be worked out again and again")
+  diagnostics_.report(Code::E0407, "the target of this FOLLOW cannot be recalculated all the time")
       .label(command.verb.span)
-      .helps("what a DEFINE is given for it has more than " + std::to_string(kMostFollowed) +
-             " parts, the most that rsc copies, or is a number out of a LIST");
+      .helps("the value given to the DEFINE has more than " + std::to_string(kMostFollowed) +
+             " parts, the most that rsc copies, or is a number from a LIST");
   return std::nullopt;
 }
 
 std::optional<Follow> Commands::follow(const ast::Command& command, bool expected) {
   chosen_ = nullptr;
   if (first_word(command) == nullptr) {
-    diagnostics_.report(Code::E0504, "this does not say which actuator is to follow")
+    diagnostics_.report(Code::E0504, "this does not say which actuator should follow")
         .label(command.verb.span)
-        .helps("name it first: `FOLLOW head TO (voice DIRECTION)`");
+        .helps("name the actuator first: `FOLLOW head TO (voice DIRECTION)`");
     return std::nullopt;
   }
   std::size_t named_by = 0;
@@ -128,7 +128,7 @@ std::optional<Follow> Commands::follow(const ast::Command& command, bool expecte
   if (!expected && std::ranges::none_of(*given, is_target)) {
     diagnostics_.report(Code::E0512, "this does not say what to follow")
         .label(command.verb.span)
-        .helps("say it with TO: `FOLLOW " + target->name + " TO (…)`");
+        .helps("write it after TO: `FOLLOW " + target->name + " TO (…)`");
     return std::nullopt;
   }
   Follow result;
@@ -158,7 +158,7 @@ bool Commands::lasts(const Given& given, Follow& result) {
   if (number.dimension() != vm::Dimension::duration) {
     diagnostics_
         .report(Code::E0301,
-                "`FOR` is a time, and this is " + std::string(dimension_phrase(number.dimension())))
+                "`FOR` is a time, but this is " + std::string(dimension_phrase(number.dimension())))
         .label(number.span);
     return false;
   }
@@ -180,7 +180,7 @@ std::optional<Followed> Commands::follow_by(std::size_t actuator, const std::vec
   if (config.to_unit == nullptr || !knows(config, vm::Param::to, false)) {
     diagnostics.report(Code::E0512, config.name.shown() + " cannot follow")
         .label(verb.span)
-        .label(config.name.span, "it knows no verb that takes it TO a place", false);
+        .label(config.name.span, "it has no verb with TO", false);
     return std::nullopt;
   }
   Followed result;
@@ -202,7 +202,7 @@ bool Commands::add_to_follow(const ActuatorConfig& actuator, const Given& given,
   if (!given.is_number || (said != Preposition::to && said != Preposition::margin && !speeds)) {
     diagnostics.report(Code::E0505, "`FOLLOW` of " + actuator.name.shown() + " does not take this")
         .label(span)
-        .helps(knows(actuator, vm::Param::at, true) ? "it takes TO, AT, how fast, MARGIN and FOR"
+        .helps(knows(actuator, vm::Param::at, true) ? "it takes TO, AT (the speed), MARGIN and FOR"
                                                     : "it takes TO, MARGIN and FOR");
     return false;
   }
@@ -237,10 +237,10 @@ ir::Follow* Statements::endless_follow(ir::Block& block) {
 }
 
 void Statements::report_never(const ir::Block& block, Span span) {
-  diagnostics_.report(Code::E0512, "this is never reached: the FOLLOW in front of it has no end")
+  diagnostics_.report(Code::E0512, "this is never reached: the FOLLOW before it never ends")
       .label(span)
-      .label(block.back().span, "it goes on as long as its response runs", false)
-      .helps("put it in front of the FOLLOW, or say with FOR how long that goes on");
+      .label(block.back().span, "it runs as long as its response does", false)
+      .helps("move it before the FOLLOW, or limit the FOLLOW with FOR");
 }
 
 void Statements::put_first(ir::Local local, Span span, ir::Block& result) {
@@ -256,7 +256,7 @@ void Statements::follow(const ast::Command& node, Span span, ir::Block& result) 
   auto follow = commands_.follow(node);
   if (!follow) return;
   for (Followed& one : follow->all)
-    if (!expressions_.stands_still(target_of(one.command), span, "what a FOLLOW goes to")) return;
+    if (!expressions_.stands_still(target_of(one.command), span, "the target of a FOLLOW")) return;
   if (endless_follow(result) == nullptr) put(ir::Follow{}, span, result);
   ir::Statement together = std::move(result.back());
   result.pop_back();

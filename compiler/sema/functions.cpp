@@ -75,9 +75,9 @@ Typed Expressions::of(const ast::Function& node, Span span) {
   const std::size_t given = node.second == nullptr ? 1 : 2;
   if (given != known->arguments) {
     diagnostics_
-        .report(Code::E0411, "`" + std::string(known->name) + "` wants " +
+        .report(Code::E0411, "`" + std::string(known->name) + "` takes " +
                                  (known->arguments == 1 ? "one number" : "two numbers") +
-                                 ", and is given " + (given == 1 ? "one" : "two"))
+                                 ", but is given " + (given == 1 ? "one" : "two"))
         .label(span)
         .helps("write `" + std::string(known->name) +
                (known->arguments == 1 ? "(number)`" : "(number, number)`"));
@@ -118,8 +118,7 @@ Typed Expressions::of_two(Operation operation, const ast::Function& node, Span s
   Typed right = number(*node.second);
   if (!left.is_number() || !right.is_number()) return make_nothing(span);
   if (!unify(left, right,
-             least ? "this takes the smaller one of {} and {}"
-                   : "this takes the greater one of {} and {}",
+             least ? "this takes the smaller of {} and {}" : "this takes the larger of {} and {}",
              false, diagnostics_))
     return make_nothing(span);
   const auto chosen = [least](std::int64_t one, std::int64_t other) {

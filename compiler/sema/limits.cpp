@@ -44,7 +44,7 @@ void Limits::report_unknown(const ast::Limit& limit) {
   }
   Diagnostic& d = diagnostics_
                       .report(Code::E0501, limit.actuator.shown() + " has no " +
-                                               limit.channel.shown() + " that could be limited")
+                                               limit.channel.shown() + " to limit")
                       .label(limit.channel.span);
   if (!diagnostics_.may_search(sensor ? robot_.sensors[*sensor].channels.size() : 1)) return;
   std::vector<std::string> candidates;
@@ -55,15 +55,14 @@ void Limits::report_unknown(const ast::Limit& limit) {
   did_you_mean(d, limit.channel.span, limit.channel.text, candidates);
   if (d.help.empty())
     d.helps("it has " + list_names(candidates) +
-            (sensor ? "" : "; for more, a sensor " + limit.actuator.shown() + " must measure it"));
+            (sensor ? "" : "; to limit more, add a sensor named " + limit.actuator.shown()));
 }
 
 void Limits::limit_speed(const ast::Limit& limit, const Target& target, ir::Program& program) {
   for (const std::size_t place : target.actuators) {
     ActuatorConfig& actuator = robot_.actuators[place];
     if (actuator.at_unit == nullptr) {
-      diagnostics_
-          .report(Code::E0505, actuator.name.shown() + " has no speed that could be limited")
+      diagnostics_.report(Code::E0505, actuator.name.shown() + " has no speed to limit")
           .label(limit.actuator.span);
       return;
     }
@@ -87,16 +86,15 @@ void Limits::limit_reading(const ast::Limit& limit, ChannelRef channel, std::uin
                            ir::Program& program) {
   const auto target = names_.find_target(limit.actuator.text);
   if (!target) {
-    diagnostics_
-        .report(Code::E0501, "there is no actuator " + limit.actuator.shown() + " to be stopped")
+    diagnostics_.report(Code::E0501, "there is no actuator " + limit.actuator.shown() + " to stop")
         .label(limit.actuator.span)
-        .helps("a group in robot.json can have the name of the sensor");
+        .helps("give a group in robot.json the name of the sensor");
     return;
   }
   const ChannelConfig& config = names_.channel(channel);
   const std::string name = names_.channel_name(channel);
   if (!config.labels.empty()) {
-    diagnostics_.report(Code::E0306, "`" + name + "` is a word, which has no limit")
+    diagnostics_.report(Code::E0306, "`" + name + "` is a word, so it cannot have a LIMIT")
         .label(limit.channel.span);
     return;
   }

@@ -182,7 +182,7 @@ void lint_hold(const ast::Check& node, const ir::Check& check, const Typed& inpu
     if (has_all || !has_some || band.stay_low > input.low || band.stay_high < input.high) continue;
     diagnostics
         .report(Code::W0210, "once " + node.name.shown() + " is " + node.bands[i].label.shown() +
-                                 ", it stays so: nothing is past its border by the MARGIN")
+                                 ", it stays so: no value gets past its limit by the MARGIN")
         .label(node.margin->span)
         .label(node.bands[i].span, "this band", false);
     return;
@@ -201,7 +201,8 @@ void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& inp
     if (!overlaps(left, band))
       diagnostics
           .report(Code::W0201, node.name.shown() + " is never " + node.bands[i].label.shown())
-          .label(node.bands[i].span, "the bands above it, or the sensor's range, leave it nothing");
+          .label(node.bands[i].span,
+                 "the bands above it, or the sensor's range, leave it no values");
     left = without(left, band);
   }
   if (left.empty()) return;
@@ -210,7 +211,7 @@ void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& inp
                                format_value(left.front().high, unit) + ", " + node.name.shown() +
                                " is unknown")
       .label(node.name.span)
-      .helps("give a band OTHERWISE, or let two bands meet");
+      .helps("add a band OTHERWISE, or close the gap between two bands");
 }
 
 // ---- W0202, W0204, W0207: rules compared with each other, and with their own responses
@@ -272,8 +273,8 @@ void lint_order(const LintInput& input) {
       if (first != higher.end())
         input.diagnostics
             .report(Code::W0202,
-                    "this rule never runs: a more important one has its actuator "
-                    "whenever it could")
+                    "this rule never runs: a more important one uses its actuator "
+                    "whenever this one could")
             .label(rule.span)
             .label(first->rule->span, "this one", false);
       own.push_back(std::move(known));
@@ -335,7 +336,7 @@ void lint_cooldown(const ir::Rule& rule, Diagnostics& diagnostics) {
   if (takes <= rule.cooldown) return;
   const Unit& second = canonical_unit(vm::Dimension::duration);
   diagnostics
-      .report(Code::W0204, "the COOLDOWN is over before the response: it takes " +
+      .report(Code::W0204, "the COOLDOWN ends before the response: the response takes " +
                                format_value(takes, second) + ", the COOLDOWN " +
                                format_value(rule.cooldown, second))
       .label(rule.span)
@@ -360,9 +361,9 @@ void lint_level(const ir::Rule& rule, Diagnostics& diagnostics) {
   if (rule.kind != vm::RuleKind::when || !never_ends(rule)) return;
   diagnostics
       .report(Code::W0207,
-              "this goes on whether the condition still holds or not: WHEN only starts it")
+              "this goes on even if the condition no longer holds: WHEN only starts it")
       .label(rule.span)
-      .helps("WHILE repeats its response as long as the condition holds, and ends it then");
+      .helps("WHILE repeats its response as long as the condition holds, and then ends it");
 }
 
 // ---- W0219
@@ -396,7 +397,7 @@ void lint_length(const ir::Rule& rule, const Names& names, Diagnostics& diagnost
   if (takes_time(rule.then_response, names)) return;
   diagnostics.report(Code::W0219, "this runs 1,000 times a second: its response takes no time")
       .label(rule.span)
-      .helps("say how often: EVERY with an IF in it, or a WAIT at the end of the response");
+      .helps("use EVERY with an IF in it, or end the response with a WAIT");
 }
 
 }  // namespace
@@ -420,10 +421,9 @@ void lint_block(const ast::Block& block, Diagnostics& diagnostics) {
   for_each_statement(block, [&](const ast::Stmt& stmt) {
     const auto* wait = std::get_if<ast::WaitUntil>(&stmt.node);
     if (wait == nullptr || wait->within != nullptr) return;
-    diagnostics
-        .report(Code::W0205, "this may wait for ever, and keeps the actuators of its response")
+    diagnostics.report(Code::W0205, "this may wait for ever, and its response keeps its actuators")
         .label(stmt.span)
-        .helps("say how long at most: `WITHIN 10s`")
+        .helps("limit the wait: `WITHIN 10s`")
         .fix({stmt.span.file, stmt.span.end, stmt.span.end}, " WITHIN 10s",
              Applicability::placeholder);
   });
@@ -477,7 +477,7 @@ void lint_state(const ast::State& state, const std::set<vm::Value>& entered,
     else if (set && entered.size() == 1)
       diagnostics
           .report(Code::W0206, "once " + state.name.shown() + " is " + label.shown() +
-                                   ", nothing sets it to something else")
+                                   ", nothing sets it to anything else")
           .label(label.span);
   }
 }
@@ -547,9 +547,11 @@ void lint_noise(const LintInput& input) {
       if (reading == nullptr) continue;
       const std::string name = input.names.channel_name(reading->channel);
       input.diagnostics
-          .report(Code::W0208, "`" + name + "` may tremble about this number, and the rule with it")
+          .report(Code::W0208,
+                  "`" + name +
+                      "` may fluctuate around this number and trigger the rule again and again")
           .label(rule.span)
-          .helps("give the rule a MARGIN, or make a CHECK with SMOOTH of `" + name + "`");
+          .helps("give the rule a MARGIN, or use a CHECK with SMOOTH of `" + name + "`");
     }
   }
 }
@@ -577,7 +579,7 @@ void lint_safety(const LintInput& input) {
       if (!found) continue;
       input.diagnostics.report(Code::W0209, "this robot moves, and no SAFETY rule can stop it")
           .label(rule.span, "the first rule that moves it")
-          .helps("write a SAFETY rule, or a LIMIT for its speed");
+          .helps("add a SAFETY rule, or a LIMIT on its speed");
       return;
     }
   }

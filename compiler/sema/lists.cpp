@@ -53,10 +53,10 @@ std::optional<ListChoice> Statements::in_turn(const ast::Name& how, const ast::N
   ListChoice choice;
   choice.list = expressions_.find_list(list);
   if (choice.list != nullptr && choice.list->numbers) {
-    diagnostics_.report(Code::E0306, list.shown() + " holds numbers, and a text is needed")
+    diagnostics_.report(Code::E0306, list.shown() + " holds numbers, but a text is needed")
         .label(list.span)
         .label(choice.list->list->name.span, "the LIST", false)
-        .helps("a number is taken by its place: `ITEM 1 OF " + std::string(list.text) + "`");
+        .helps("choose a number by its position: `ITEM 1 OF " + std::string(list.text) + "`");
     choice.list = nullptr;
   }
   choice.how = folded == "any" ? ListChoice::How::any : ListChoice::How::next;
@@ -139,10 +139,9 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
   if (safety_ || count > kMaxTexts) {
     diagnostics_
         .report(safety_ ? Code::E0404 : Code::E0407,
-                safety_ ? "a SAFETY rule does not choose from a LIST"
+                safety_ ? "a SAFETY rule cannot choose from a LIST"
                         : choice.list->list->name.shown() + " has " + std::to_string(count) +
-                              " texts, and a LIST that is chosen from takes " +
-                              std::to_string(kMaxTexts))
+                              " texts; a rule can choose from at most " + std::to_string(kMaxTexts))
         .label(choice.span);
     return std::nullopt;
   }

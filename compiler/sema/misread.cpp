@@ -51,9 +51,9 @@ bool Commands::is_second_command(const ast::Command& command, std::size_t place)
   if (word == nullptr || !names_.is_verb(word->name.text) || is_known_word(word->name.text))
     return false;
   const Span before = place == 0 ? command.verb.span : command.arguments[place - 1].span;
-  diagnostics_.report(Code::E0505, word->name.shown() + " begins a second command in this line")
+  diagnostics_.report(Code::E0505, word->name.shown() + " begins a second command on this line")
       .label(word->name.span)
-      .helps("each command stands on a line of its own")
+      .helps("write each command on its own line")
       .fix({before.file, before.end, word->name.span.begin}, "\n", Applicability::likely);
   return true;
 }
@@ -90,8 +90,8 @@ bool Commands::is_reading(const ast::Command& command, std::size_t place) {
   const std::string reading =
       std::string(sensor->name.text) + " " + std::string(channel->name.text);
   Diagnostic& d = diagnostics_
-                      .report(Code::E0505, "this is a number, and " + command.verb.shown() +
-                                               " needs to know what it is")
+                      .report(Code::E0505, "this is a number, but nothing tells " +
+                                               command.verb.shown() + " what to do with it")
                       .label(both(command.arguments[place], command.arguments[place + 1]));
   if (same_name(command.verb.text, "SAY"))
     d.helps("write the words, a comma and the number: `SAY \"…\", " + reading + "`");
@@ -111,8 +111,8 @@ bool Commands::lacks_comma(const ast::Command& command, std::size_t place) {
   if (!more && !number) return false;
   const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
   diagnostics_.report(Code::E0505, "a comma is missing between the parts of a text")
-      .label(next.span, "this goes on with it")
-      .helps("write commas between: `\"You have\", points, \"points\"`")
+      .label(next.span, "this is another part")
+      .helps("separate the parts with commas: `\"You have\", points, \"points\"`")
       .fix(gap, ", ", Applicability::likely);
   return true;
 }
@@ -132,7 +132,7 @@ bool Commands::lacks_list(const ast::Command& command, std::size_t place) {
   }
   if (!same_name(word->name.text, "ITEM") || !std::holds_alternative<ast::Amount>(next.value))
     return false;
-  diagnostics_.report(Code::E0505, "`OF` is missing behind the number of the ITEM")
+  diagnostics_.report(Code::E0505, "`OF` is missing after the number of the ITEM")
       .label(both(command.arguments[place], next))
       .helps("write `ITEM 3 OF` and the LIST");
   return true;
@@ -150,9 +150,9 @@ bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
   const Unit* const unit = find_unit(word->name.text);
   if (!bare || unit == nullptr || is_known_word(word->name.text)) return false;
   const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
-  diagnostics_.report(Code::E0505, "no space stands between a number and its unit")
+  diagnostics_.report(Code::E0505, "there must be no space between a number and its unit")
       .label(both(command.arguments[place], next))
-      .helps("write the unit right behind it, such as `30" + std::string(unit->spelling) + "`")
+      .helps("write the unit right after the number, as in `30" + std::string(unit->spelling) + "`")
       .fix(gap, "");
   return true;
 }
@@ -184,7 +184,7 @@ bool Commands::is_sensor_meant(const Recipient& to, const ast::Word& word, const
       to.diagnostics
           .report(Code::E0501,
                   word.name.shown() + " is a sensor, " +
-                      (says ? "no text" : "and `" + to.verb.name + "` is for an actuator"))
+                      (says ? "not a text" : "but `" + to.verb.name + "` needs an actuator"))
           .label(word.name.span);
   if (says)
     d.helps("write the words, a comma and what it measures: `" + to.verb.name + " \"…\", " +

@@ -47,7 +47,7 @@ std::optional<ir::Motion> Motions::translate(const ast::Motion& motion) {
   if (!add_columns(motion, columns, result)) return std::nullopt;
   if (motion.rows.size() > kMostRows) {
     diagnostics_
-        .report(Code::E0407, "a MOTION can have " + std::to_string(kMostRows) + " rows, and " +
+        .report(Code::E0407, "a MOTION can have " + std::to_string(kMostRows) + " rows, but " +
                                  motion.name.shown() + " has " + std::to_string(motion.rows.size()))
         .label(motion.name.span);
     return std::nullopt;
@@ -56,9 +56,8 @@ std::optional<ir::Motion> Motions::translate(const ast::Motion& motion) {
     if (!add_row(motion, row, columns, result)) return std::nullopt;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (!result.tracks[columns[i].front()].keys.empty()) continue;
-    diagnostics_
-        .report(Code::E0511, "nothing is said of " + motion.columns[i].shown() + " in this MOTION")
-        .label(motion.columns[i].span, "its column has no value");
+    diagnostics_.report(Code::E0511, "this MOTION has no value for " + motion.columns[i].shown())
+        .label(motion.columns[i].span, "its column is empty");
     return std::nullopt;
   }
   return result;
@@ -99,7 +98,7 @@ bool Motions::can_move(std::size_t actuator, const ast::Name& column) {
   if (follows_keys(config)) return true;
   diagnostics_.report(Code::E0511, config.name.shown() + " cannot be part of a MOTION")
       .label(column.span)
-      .label(config.name.span, "it knows no verb that takes TO and OVER", false);
+      .label(config.name.span, "it has no verb with TO and OVER", false);
   return false;
 }
 
@@ -113,10 +112,10 @@ std::optional<vm::Value> Motions::time_of(const ast::MotionRow& row, vm::Value a
   const std::string least = std::to_string(vm::kMinKeyGapMs) + "ms";
   diagnostics_
       .report(Code::E0510, value <= after
-                               ? std::string("this row is not after the one above it")
+                               ? std::string("this row is not later than the one above it")
                                : "this row is less than " + least + " after the one above it")
       .label(row.time->span)
-      .helps("times count from the beginning of the MOTION, and rows are at least " + least +
+      .helps("times count from the start of the MOTION, and rows must be at least " + least +
              " apart");
   return std::nullopt;
 }
@@ -132,7 +131,7 @@ bool Motions::add_row(const ast::Motion& motion, const ast::MotionRow& row,
                                  counted(columns.size(), "actuator"))
         .label(row.span)
         .label(motion.name.span, "the columns are named here", false)
-        .helps("write `-` where an actuator is on its way");
+        .helps("write `-` where an actuator is between two values");
     return false;
   }
   const bool first = &row == &motion.rows.front();
@@ -176,7 +175,8 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& trac
 void Motions::report_late(const ActuatorConfig& actuator, const std::string& where, Span span) {
   const Unit& unit = param_unit(actuator, vm::Param::at);
   diagnostics_
-      .report(Code::N0004, actuator.name.shown() + " comes " + where + ": it goes no faster than " +
+      .report(Code::N0004, actuator.name.shown() + " arrives " + where +
+                               ": it goes no faster than " +
                                format_value(actuator.speed_limit, unit))
       .label(span)
       .label(actuator.limit_span, "the limit", false);

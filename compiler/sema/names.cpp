@@ -94,10 +94,9 @@ bool Names::report_missing(const ast::Operand& operand) {
   for (const MissingModule& missing : robot_.missing) {
     if (!same_name(missing.name.text, operand.name.text)) continue;
     diagnostics_
-        .report(Code::E0501, "there is no " + missing.name.shown() +
-                                 " without its module, the file " + missing.file)
+        .report(Code::E0501, missing.name.shown() + " needs its module, the file " + missing.file)
         .label(operand.name.span)
-        .label(missing.path, "which is not there", false)
+        .label(missing.path, "this file does not exist", false)
         .helps(missing.help);
     return true;
   }
@@ -111,7 +110,7 @@ void Names::report_unknown(const ast::Operand& operand) {
                       .label(operand.name.span);
   if (const FunctionName* const function = find_function(operand.name.text);
       function != nullptr && operand.channel) {
-    d.helps("write `" + std::string(function->name) + "(…)`: its number stands in brackets");
+    d.helps("write `" + std::string(function->name) + "(…)`: its number goes in brackets");
     return;
   }
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
@@ -320,11 +319,11 @@ void Names::report_twice(const ast::Name& name, Span first) {
   if (yours == (first.file == kProgramFile)) {
     d.label(name.span).label(first, "first given here", false);
     if (name.span.file != first.file)
-      d.helps("use one of the two modules, or a copy of one with another name in it");
+      d.helps("use only one of the two modules, or rename it in a copy of one");
     return;
   }
   d.label(yours ? name.span : first)
-      .label(yours ? first : name.span, "a module that you use has it too", false)
+      .label(yours ? first : name.span, "a module that you use has this name too", false)
       .helps("choose another name for yours");
 }
 
@@ -454,7 +453,7 @@ void Names::add(const ast::Check& check) {
     const std::string channel(std::get<ast::Operand>(check.operand->node).name.text);
     diagnostics_
         .report(Code::E0101,
-                "a CHECK has a name of its own, and " + check.name.shown() + " is a sensor")
+                "a CHECK needs a name of its own, but " + check.name.shown() + " is a sensor")
         .label(check.name.span)
         .helps("write `CHECK " + sensor + "_words OF " + sensor + " " + channel + "`");
     return;

@@ -39,7 +39,7 @@ bool Expressions::lacks_quotes(const ast::Expr& item) {
   const std::string text(word->name.text);
   diagnostics_.report(Code::E0501, "there is no number called " + word->name.shown())
       .label(word->name.span)
-      .helps("a text stands in quotes: `\"" + text + "\"`");
+      .helps("put a text in quotes: `\"" + text + "\"`");
   return true;
 }
 
@@ -87,7 +87,7 @@ std::optional<std::size_t> Expressions::known_item(const ListName& list, const T
       .report(Code::E0509, list.list->name.shown() + " has the " +
                                (list.numbers ? "numbers" : "texts") + " 1 to " +
                                std::to_string(count))
-      .label(index.span, "outside of that")
+      .label(index.span, "outside that range")
       .label(list.list->name.span, "the LIST", false);
   return std::nullopt;
 }
@@ -98,8 +98,8 @@ Typed Expressions::of(const ast::ItemOf& node, Span span) {
   if (!list->numbers || in_list_) {
     diagnostics_
         .report(Code::E0306, list->numbers
-                                 ? "the numbers of a LIST are not those of another"
-                                 : node.list.shown() + " holds texts, and a number is needed")
+                                 ? "a LIST cannot contain an ITEM of a LIST"
+                                 : node.list.shown() + " holds texts, but a number is needed")
         .label(span)
         .label(list->list->name.span, "the LIST", false);
     return make_nothing(span);
@@ -118,9 +118,9 @@ Typed Expressions::of(const ast::ItemOf& node, Span span) {
   }
   if (choose_ == nullptr) {
     diagnostics_
-        .report(Code::E0404, "`ITEM` of numbers is chosen in a response only, once each time")
+        .report(Code::E0404, "an `ITEM` with a changing number can be chosen only in a response")
         .label(span)
-        .helps("let a rule SET a variable to this, and ask for the variable");
+        .helps("SET a variable to it in a rule, and use the variable here");
     return make_nothing(span);
   }
   Typed result = make_constant(0, *numbers.unit, span);

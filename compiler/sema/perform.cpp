@@ -46,13 +46,13 @@ void Commands::report_no_motion(const ast::Command& command) {
     diagnostics_.report(Code::E0505, "this does not say which MOTION to perform")
         .label(command.verb.span)
         .helps(candidates.empty() ? "write a MOTION first: a table of times and positions"
-                                  : "there is " + list_names(candidates));
+                                  : "MOTIONs: " + list_names(candidates));
     return;
   }
   const ast::Argument& first = command.arguments.front();
   const ast::Word* const word = plain_word(first);
   if (word == nullptr) {
-    diagnostics_.report(Code::E0505, "the name of a MOTION stands here").label(first.span);
+    diagnostics_.report(Code::E0505, "this must be the name of a MOTION").label(first.span);
     return;
   }
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no MOTION " + word->name.shown())
@@ -63,7 +63,7 @@ void Commands::report_no_motion(const ast::Command& command) {
     return;
   }
   did_you_mean(d, word->name.span, word->name.text, candidates);
-  if (d.help.empty() && !candidates.empty()) d.helps("there is " + list_names(candidates));
+  if (d.help.empty() && !candidates.empty()) d.helps("MOTIONs: " + list_names(candidates));
 }
 
 // AT is the speed, in percent of the MOTION's own; TIMES is how often.
@@ -73,7 +73,7 @@ bool Commands::add_to_performance(const Given& given, ir::Command& result) {
   if (!is_speed && (!given.is_number || given.param != vm::Param::times)) {
     diagnostics_.report(Code::E0505, "`PERFORM` does not take this")
         .label(span)
-        .helps("it takes AT, how fast, and TIMES, how often: `PERFORM wave AT 150% 2 TIMES`");
+        .helps("it takes AT (how fast) and TIMES (how often): `PERFORM wave AT 150% 2 TIMES`");
     return false;
   }
   if (is_given(result, given.param)) {
@@ -86,10 +86,11 @@ bool Commands::add_to_performance(const Given& given, ir::Command& result) {
   if (!number.is_number()) return false;
   if (number.dimension() != unit.dimension) {
     diagnostics_
-        .report(Code::E0301, is_speed ? "the speed of a MOTION is a share of its own"
-                                      : "how often is a number without a unit")
+        .report(Code::E0301, is_speed ? "the speed of a MOTION is a percentage of its own speed"
+                                      : "TIMES is a number without a unit")
         .label(number.span)
-        .helps(is_speed ? "write percent: `AT 150%` is half as fast again" : "write `2 TIMES`");
+        .helps(is_speed ? "write a percentage: `AT 150%` is half as fast again"
+                        : "write `2 TIMES`");
     return false;
   }
   const vm::Value value = number.code.constant;
@@ -97,7 +98,7 @@ bool Commands::add_to_performance(const Given& given, ir::Command& result) {
     diagnostics_
         .report(Code::E0506, is_speed     ? "AT must be above 0"
                              : value <= 0 ? "TIMES must be above 0"
-                                          : "TIMES counts in whole numbers")
+                                          : "TIMES must be a whole number")
         .label(number.span);
     return false;
   }

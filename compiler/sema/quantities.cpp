@@ -97,8 +97,8 @@ Expression make_binary(Operation operation, Expression left, Expression right) {
 void note_rounded(Decimal number, vm::Value value, const Unit& unit, Span span,
                   Diagnostics& diagnostics) {
   if (!is_rounded(number, unit)) return;
-  diagnostics.report(Code::N0005, "the robot keeps this as " + format_value(value, unit))
-      .label(span, "finer than it can be kept");
+  diagnostics.report(Code::N0005, "the robot stores this as " + format_value(value, unit))
+      .label(span, "finer than the robot can store");
 }
 
 void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
@@ -153,10 +153,10 @@ bool report_offset_unit(const Typed& number, Diagnostics& diagnostics) {
                         number.unit->offset != 0;
   if (is_point)
     diagnostics
-        .report(Code::E0301, "RSL does not calculate with `" + std::string(number.unit->spelling) +
-                                 "`, only compares")
+        .report(Code::E0301, "RSL cannot calculate with `" + std::string(number.unit->spelling) +
+                                 "`, only compare it")
         .label(number.span)
-        .helps("write it in C");
+        .helps("write the temperature in `C` (Celsius)");
   return is_point;
 }
 

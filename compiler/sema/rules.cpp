@@ -50,9 +50,9 @@ Expression Rules::period(const ast::EveryRule& node) {
   Typed longest = expressions_.duration(*node.to, "TO");
   if (!period.is_number() || !longest.is_number()) return {};
   if (period.low > longest.high)
-    diagnostics_.report(Code::E0509, "EVERY goes from the shorter time to the longer one")
+    diagnostics_.report(Code::E0509, "EVERY takes the shorter time first")
         .label(node.to->span)
-        .label(node.period->span, "longer than that", false);
+        .label(node.period->span, "this is the longer one", false);
   return make_binary(Operation::random, std::move(period.code), std::move(longest.code));
 }
 
@@ -71,18 +71,17 @@ void Rules::modify(const ast::Rule& rule, bool inside, ir::Rule& result) {
   const bool is_every = std::holds_alternative<ast::EveryRule>(rule.node);
   if (inside && modifiers.priority)
     refuse(modifiers.priority->span, "a rule in a BEHAVIOR has the priority of its BEHAVIOR",
-           "leave it out, or move the rule out of the BEHAVIOR");
+           "remove it, or move the rule out of the BEHAVIOR");
   if (modifiers.cooldown)
     result.cooldown = expressions_.constant_duration(*modifiers.cooldown, "COOLDOWN").value_or(0);
   if (modifiers.waiting) {
     result.waiting = expressions_.constant_duration(*modifiers.waiting, "WAITING").value_or(0);
     if (is_while)
-      refuse(modifiers.waiting->span, "a WHILE has no use for WAITING",
+      refuse(modifiers.waiting->span, "a WHILE does not need WAITING",
              "it starts whenever its actuators are free and its condition holds");
   }
   if (modifiers.margin && is_every)
-    refuse(modifiers.margin->span, "EVERY has no condition that a MARGIN could belong to",
-           "leave it out");
+    refuse(modifiers.margin->span, "EVERY has no condition for a MARGIN", "remove it");
   result.restarting = modifiers.restarting;
   if (modifiers.restarting && is_while)
     refuse(rule.head_span, "a WHILE cannot be RESTARTING",
@@ -98,7 +97,7 @@ ir::Rule Rules::translate(const ast::Safety& safety, Span span) {
   result.line = statements_.line_of(span);
   result.span = safety.name.span;
   const ast::Modifiers& modifiers = safety.modifiers;
-  const std::string always = "a SAFETY rule always comes first and acts at once";
+  const std::string always = "a SAFETY rule always comes first and acts immediately";
   if (modifiers.priority) refuse(modifiers.priority->span, "SAFETY has no PRIORITY", always);
   if (modifiers.cooldown) refuse(modifiers.cooldown->span, "SAFETY has no COOLDOWN", always);
   if (modifiers.waiting) refuse(modifiers.waiting->span, "SAFETY has no WAITING", always);

@@ -43,10 +43,8 @@ ir::Block Statements::block(const ast::Block& block) {
   ir::Block result;
   if (!block.empty() && depth_ == vm::kMaxBlocks) {
     diagnostics_
-        .report(Code::E0407, "blocks stand in each other more than " +
-                                 std::to_string(vm::kMaxBlocks) +
-                                 " levels deep, those of DEFINEs included; a robot takes " +
-                                 std::to_string(vm::kMaxBlocks))
+        .report(Code::E0407, "blocks are nested more than " + std::to_string(vm::kMaxBlocks) +
+                                 " levels deep, including those of DEFINEs")
         .label(block.front().span);
     return result;
   }
@@ -75,11 +73,11 @@ bool Statements::within_budget(Span span) {
   const bool response = statements_ > kMaxStatements;
   if (first)
     diagnostics_
-        .report(Code::E0407, "with all its DEFINEs this " +
+        .report(Code::E0407, "with all its DEFINEs, this " +
                                  std::string(response ? "response" : "program") +
                                  " has more than " +
                                  std::to_string(response ? kMaxStatements : kMaxAllStatements) +
-                                 " statements, the most that rsc translates")
+                                 " statements, the most that rsc allows")
         .label(span, "from here on");
   return false;
 }
@@ -250,9 +248,9 @@ void Statements::add(const ast::Repeat& node, Span span, ir::Block& result) {
   loop.body = block(node.body);
   if (!good || diagnostics_.errors() > errors) return;  // the mistake may be in a WAIT
   if (!is_bounded(loop)) {
-    diagnostics_.report(Code::E0403, "this loop never waits, so it would hold the robot up")
+    diagnostics_.report(Code::E0403, "this loop never waits, so it would block the robot")
         .label({span.file, span.begin, node.body.empty() ? span.end : node.body.front().span.begin})
-        .helps("put a WAIT, a WAIT UNTIL or a THEN into it, not inside of an IF");
+        .helps("put a WAIT, WAIT UNTIL or THEN in it, outside any IF");
     return;
   }
   put(std::move(loop), span, result);
@@ -268,7 +266,7 @@ bool Statements::repeat_times(const ast::Expr& times, ir::Repeat& result) {
   const vm::Value value = result.control.constant;
   if (value > 0 && value % vm::kScale == 0) return true;
   diagnostics_
-      .report(Code::E0509, value > 0 ? "TIMES counts in whole numbers" : "TIMES must be above 0")
+      .report(Code::E0509, value > 0 ? "TIMES must be a whole number" : "TIMES must be above 0")
       .label(times.span);
   return false;
 }
@@ -286,9 +284,9 @@ void Statements::add(const ast::PickOne& node, Span span, ir::Block& result) {
       good = good && value;
       made.weight = value.value_or(vm::kScale);
     } else if (weighted) {
-      diagnostics_.report(Code::E0509, "the other options have a weight, and this one has none")
+      diagnostics_.report(Code::E0509, "the other options have a weight, but this one has none")
           .label(option.span)
-          .helps("give all of them one, or none");
+          .helps("give every option a weight, or none");
       good = false;
     }
     sum += made.weight;
@@ -296,9 +294,9 @@ void Statements::add(const ast::PickOne& node, Span span, ir::Block& result) {
   }
   if (good && sum > vm::kValueMax)
     diagnostics_
-        .report(Code::E0304,
-                "the weights of these options come to " + std::to_string(sum / vm::kScale) +
-                    " together, and a robot takes " + std::to_string(vm::kValueMax / vm::kScale))
+        .report(Code::E0304, "the weights of these options add up to " +
+                                 std::to_string(sum / vm::kScale) + "; the limit is " +
+                                 std::to_string(vm::kValueMax / vm::kScale))
         .label(span);
   else if (good && !pick.options.empty())
     put(std::move(pick), span, result);
@@ -311,7 +309,7 @@ std::optional<vm::Value> Statements::weight(const ast::Expr& expr) {
   const vm::Dimension dimension = value->dimension();
   if (dimension != vm::Dimension::number && dimension != vm::Dimension::percent) {
     diagnostics_
-        .report(Code::E0301, "the weight of an OPTION is a percentage, and this is " +
+        .report(Code::E0301, "the weight of an OPTION is a percentage, but this is " +
                                  std::string(dimension_phrase(dimension)))
         .label(expr.span);
     return std::nullopt;
@@ -338,9 +336,9 @@ std::optional<std::string> label_of(const ast::Expr& expr) {
 std::string_view why_not(vm::VariableKind kind) {
   switch (kind) {
     case vm::VariableKind::band:
-      return "it follows what it is a CHECK of";
+      return "it follows the value that it checks";
     case vm::VariableKind::signal:
-      return "a signal is sent with SIGNAL";
+      return "use SIGNAL to send it";
     case vm::VariableKind::timer:
       return "RESTART sets it back to 0";
     default:
@@ -373,7 +371,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
     if (!kind.empty()) {
       diagnostics_.report(Code::E0508, name.shown() + " is " + kind + ", which cannot be set")
           .label(name.span)
-          .helps("REMEMBER, STATE and FEELING can be set");
+          .helps("only a REMEMBER, STATE or FEELING can be set");
       return nullptr;
     }
     Diagnostic& d =
@@ -392,7 +390,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
     return nullptr;
   }
   if (!number || variable->kind != vm::VariableKind::state) return variable;
-  diagnostics_.report(Code::E0508, name.shown() + " is a STATE, which does not count up and down")
+  diagnostics_.report(Code::E0508, name.shown() + " is a STATE, which cannot be raised or lowered")
       .label(name.span)
       .helps("write `SET " + std::string(name.text) + " TO " + variable->labels.front() + "`");
   return nullptr;
@@ -407,7 +405,7 @@ bool Statements::in_range(const VariableName& variable, const Typed& value) {
       .report(Code::E0509, variable.name.shown() + " goes from " +
                                format_value(variable.low, *variable.unit) + " to " +
                                format_value(variable.high, *variable.unit))
-      .label(value.span, "outside of that")
+      .label(value.span, "outside that range")
       .label(variable.name.span, "its range", false);
   return false;
 }
@@ -426,7 +424,7 @@ void Statements::set_label(const ast::Set& node, const VariableName& variable, S
                            ir::Block& result) {
   const auto label = label_of(*node.value);
   if (!label) {
-    diagnostics_.report(Code::E0306, node.name.shown() + " is a word, and this is not one")
+    diagnostics_.report(Code::E0306, node.name.shown() + " is a word, but this is not")
         .label(node.value->span)
         .helps("it can be " + list_names(variable.labels, "or"));
     return;
@@ -472,7 +470,7 @@ bool Statements::restarts_at(const ast::Command& node) {
       word != nullptr ? names_.find_variable(word->name.text) : nullptr;
   if (timer == nullptr || timer->kind != vm::VariableKind::timer) return false;
   const Span rest{word->name.span.file, word->name.span.end, node.arguments.back().span.end};
-  diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, and to nothing else")
+  diagnostics_.report(Code::E0513, "RESTART always sets a TIMER back to 0")
       .label({rest.file, node.arguments[1].span.begin, rest.end})
       .helps("write `RESTART " + std::string(word->name.text) + "`")
       .fix(rest, "", Applicability::likely);
@@ -491,7 +489,7 @@ void Statements::restart(const ast::Command& node, Span span, ir::Block& result)
   }
   if (restarts_at(node)) return;
   Diagnostic& d =
-      diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, and this is none")
+      diagnostics_.report(Code::E0513, "RESTART sets a TIMER back to 0, but this is not a TIMER")
           .label(word != nullptr ? word->name.span : span);
   std::vector<std::string> timers;
   for (const VariableName& one : names_.variables())
@@ -527,8 +525,8 @@ void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span sp
   if (text.values().size() > kMaxValues) {
     diagnostics_
         .report(Code::E0407, std::string(node.alert ? "this ALERT" : "this LOG") + " has " +
-                                 std::to_string(text.values().size()) +
-                                 " numbers, and takes at most " + std::to_string(kMaxValues))
+                                 std::to_string(text.values().size()) + " numbers; the limit is " +
+                                 std::to_string(kMaxValues))
         .label(span);
     return;
   }

@@ -16,8 +16,7 @@ bool TextBuilder::add(std::string_view text, Span span) {
   const auto place = find_place(text);
   if (place || text.find('\0') != std::string::npos) {
     const std::string what(place ? text.substr(place->begin, place->size) : "{}");
-    diagnostics_.report(Code::E0509, "`" + what + "` cannot stand in a text that is written out")
-        .label(span);
+    diagnostics_.report(Code::E0509, "`" + what + "` cannot be part of this text").label(span);
     return false;
   }
   append(text);
@@ -49,8 +48,8 @@ bool TextBuilder::add(const ast::Argument& part) {
 
 // Statements has already replaced the first one.
 bool TextBuilder::report_second(Span span) {
-  diagnostics_.report(Code::E0505, "a statement says one text out of a LIST")
-      .label(span, "this is the second");
+  diagnostics_.report(Code::E0505, "a statement can use only one text from a LIST")
+      .label(span, "this is a second one");
   return false;
 }
 

@@ -68,9 +68,9 @@ bool Expressions::stands_still(const Expression& value, Span span, std::string_v
   if (!reads_time(value)) return true;
   diagnostics_
       .report(Code::E0513,
-              "a TIMER goes on all the time, so it cannot stand in " + std::string(where))
+              "a TIMER changes all the time, so it cannot be used in " + std::string(where))
       .label(span)
-      .helps("compare it: `idle > 30s` is looked at exactly when it becomes true");
+      .helps("compare it instead: the robot notices exactly when `idle > 30s` becomes true");
   return false;
 }
 
@@ -81,8 +81,7 @@ Typed Expressions::time_comparison(ast::Relation relation, Typed left, Typed rig
   }
   if (left.code.operation == Operation::elapsed && !reads_time(right.code))
     return make_condition(compared(relation, left.code, std::move(right.code)), span);
-  diagnostics_
-      .report(Code::E0513, "a TIMER stands alone on its side of a comparison, and only on one side")
+  diagnostics_.report(Code::E0513, "a TIMER must stand alone on one side of a comparison")
       .label(span)
       .helps("calculate on the other side: `idle > 2 * patience`");
   return make_nothing(span);

@@ -15,18 +15,18 @@ struct ForeignVerb {
   std::string_view spelling, meant, help;
 };
 constexpr ForeignVerb kForeignVerbs[] = {
-    {"PRINT", "LOG", "a line for you to read is written with LOG"},
-    {"ECHO", "LOG", "a line for you to read is written with LOG"},
-    {"WRITE", "LOG", "a line for you to read is written with LOG"},
-    {"SLEEP", "WAIT", "a pause is made with WAIT"},
-    {"DELAY", "WAIT", "a pause is made with WAIT"},
-    {"PAUSE", "WAIT", "a pause is made with WAIT"},
-    {"ADD", "", "what is remembered is changed with RAISE: `RAISE visits BY 1`"},
-    {"INCREASE", "RAISE", "what is remembered is changed with RAISE: `RAISE visits BY 1`"},
-    {"INCREMENT", "RAISE", "what is remembered is changed with RAISE: `RAISE visits BY 1`"},
-    {"SUBTRACT", "", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
-    {"DECREASE", "LOWER", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
-    {"DECREMENT", "LOWER", "what is remembered is changed with LOWER: `LOWER visits BY 1`"},
+    {"PRINT", "LOG", "LOG writes a line for you to read"},
+    {"ECHO", "LOG", "LOG writes a line for you to read"},
+    {"WRITE", "LOG", "LOG writes a line for you to read"},
+    {"SLEEP", "WAIT", "WAIT makes a pause"},
+    {"DELAY", "WAIT", "WAIT makes a pause"},
+    {"PAUSE", "WAIT", "WAIT makes a pause"},
+    {"ADD", "", "RAISE increases a variable: `RAISE visits BY 1`"},
+    {"INCREASE", "RAISE", "RAISE increases a variable: `RAISE visits BY 1`"},
+    {"INCREMENT", "RAISE", "RAISE increases a variable: `RAISE visits BY 1`"},
+    {"SUBTRACT", "", "LOWER decreases a variable: `LOWER visits BY 1`"},
+    {"DECREASE", "LOWER", "LOWER decreases a variable: `LOWER visits BY 1`"},
+    {"DECREMENT", "LOWER", "LOWER decreases a variable: `LOWER visits BY 1`"},
 };
 
 // Keywords that may begin a line or continue the one before.
@@ -58,8 +58,8 @@ bool Commands::begins_with_actuator(const ast::Command& command) {
   if (!target || target->actuators.empty()) return false;
   Diagnostic& d = diagnostics_
                       .report(Code::E0501, name.shown() +
-                                               " is an actuator, and no verb: a command "
-                                               "begins with what is done")
+                                               " is an actuator, not a verb: a command "
+                                               "begins with a verb")
                       .label(name.span);
   const ast::Word* const first = first_word(command);
   if (first != nullptr && names_.is_verb(first->name.text)) {
@@ -81,7 +81,7 @@ bool Commands::calls_define(const ast::Command& command) {
   const Span verb = command.verb.span;
   diagnostics_
       .report(Code::E0501,
-              "there is no verb " + command.verb.shown() + ": a DEFINE is done by its name alone")
+              "there is no verb " + command.verb.shown() + ": a DEFINE is run by its name alone")
       .label(verb)
       .helps("write `" + std::string(first->name.text) + "`")
       .fix({verb.file, verb.begin, first->name.span.begin}, "", Applicability::likely);
@@ -98,8 +98,8 @@ bool Commands::is_foreign(const ast::Command& command) {
     const bool timer = reset->kind == vm::VariableKind::timer;
     Diagnostic& d = diagnostics_
                         .report(Code::E0501, "there is no verb " + command.verb.shown() + ": " +
-                                                 (timer ? "a TIMER begins at 0 again with RESTART"
-                                                        : "a variable has a new value with SET"))
+                                                 (timer ? "RESTART sets a TIMER back to 0"
+                                                        : "SET changes a variable"))
                         .label(command.verb.span);
     if (timer) d.fix(command.verb.span, "RESTART", Applicability::likely);
     return true;
@@ -125,7 +125,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
   if (command.arguments.empty()) d.unknown = verb.text;
   if (names_.find_define(verb.text) != nullptr) {
-    d.helps(verb.shown() + " is a DEFINE: what it is given stands behind WITH, with commas");
+    d.helps(verb.shown() + " is a DEFINE: write its values after WITH, separated by commas");
     return;
   }
   if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;
@@ -140,10 +140,10 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   if (did_you_mean(d, verb.span, verb.text, candidates)) return doubt_keyword(d);
   // The verb may belong to a device that this robot lacks: usually `USE` brought in a file that needs it.
   const auto devices = devices_with(verb.text);
-  if (devices.empty() && !verbs.empty()) d.helps("it could be " + list_names(verbs));
+  if (devices.empty() && !verbs.empty()) d.helps("verbs: " + list_names(verbs));
   if (devices.empty()) return;
   d.message = "no actuator of this robot knows the verb " + verb.shown();
-  d.helps("robot.json needs one with a device that does: " + list_names(devices, "or"));
+  d.helps("add one to robot.json, with the device " + list_names(devices, "or"));
 }
 
 }  // namespace robosync::compiler

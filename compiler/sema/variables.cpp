@@ -52,7 +52,7 @@ void Variables::declare(const ast::Remember& node, VariableName& name, ir::Varia
   name.unit = &canonical_unit(vm::Dimension::number);
   name.unit_span = node.name.span;
   if (node.value == nullptr) return;
-  const auto value = expressions_.constant(*node.value, "what a REMEMBER starts with");
+  const auto value = expressions_.constant(*node.value, "the first value of a REMEMBER");
   if (!value) return;
   result.initial = value->code.constant;
   if (value->is_bare()) return;
@@ -73,16 +73,16 @@ void Variables::check_kept() {
       diagnostics_.report(Code::E0101, "there is another KEPT " + name.name.shown())
           .label(place)
           .label(places[*kept.find(name.name.text)], "the first one", false)
-          .helps("what is kept is found again by its name: give one of them another");
+          .helps("kept values are found by their names: rename one of them");
     }
     places.push_back(place);
   }
   if (places.size() <= vm::kMaxKept) return;
   diagnostics_
       .report(Code::E0407, "the program has " + std::to_string(places.size()) +
-                               " KEPT numbers, and a robot keeps " + std::to_string(vm::kMaxKept))
+                               " KEPT numbers; the limit is " + std::to_string(vm::kMaxKept))
       .label(places[vm::kMaxKept], "this is one too many")
-      .helps("keep what must outlast the power, and remember the rest");
+      .helps("use KEPT only for what must survive a power-off");
 }
 
 void Variables::declare(const ast::State& node, VariableName& name, ir::Variable& result) {
@@ -127,7 +127,7 @@ void Variables::declare(const ast::Feeling& node, VariableName& name, ir::Variab
   const auto to = expressions_.constant_amount(*node.to, wanted);
   if (!from || !to) return;
   if (from->code.constant >= to->code.constant) {
-    diagnostics_.report(Code::E0509, "a FEELING goes from the smaller number to the larger one")
+    diagnostics_.report(Code::E0509, "a FEELING takes the smaller number first")
         .label(node.to->span)
         .label(node.from->span, "not above this", false);
     return;
@@ -158,7 +158,7 @@ std::optional<vm::Value> Variables::inside(const ast::Expr& expr, const Wanted& 
       .report(Code::E0509, "`" + feeling.name + "` goes from " +
                                format_value(feeling.min, *wanted.unit) + " to " +
                                format_value(feeling.max, *wanted.unit))
-      .label(expr.span, "outside of that");
+      .label(expr.span, "outside that range");
   return std::nullopt;
 }
 
@@ -263,9 +263,9 @@ Typed Variables::input(const ast::Check& node) {
   const VariableName* variable =
       operand != nullptr && !operand->channel ? names_.find_variable(operand->name.text) : nullptr;
   if (variable != nullptr && variable->kind == vm::VariableKind::band) {
-    diagnostics_.report(Code::E0306, "a CHECK cannot look at another CHECK")
+    diagnostics_.report(Code::E0306, "a CHECK cannot check another CHECK")
         .label(node.operand->span)
-        .helps("it looks at a sensor, a FEELING or a REMEMBER with numbers");
+        .helps("it checks a sensor, a FEELING or a REMEMBER with a number");
     return make_nothing(node.operand->span);
   }
   Typed result = expressions_.any(*node.operand);
@@ -274,8 +274,7 @@ Typed Variables::input(const ast::Check& node) {
   const bool good = result.is_number() && (result.code.operation == Operation::input ||
                                            result.code.operation == Operation::variable);
   if (good || result.type == Type::nothing) return result;
-  diagnostics_
-      .report(Code::E0306, "a CHECK looks at a sensor, a FEELING or a REMEMBER with numbers")
+  diagnostics_.report(Code::E0306, "a CHECK needs a sensor, a FEELING or a REMEMBER with a number")
       .label(node.operand->span);
   return make_nothing(node.operand->span);
 }
@@ -299,8 +298,7 @@ std::optional<vm::Band> Variables::band(const ast::Band& node, const Wanted& wan
     band.stay_high = margin == 0 ? band.high : vm::add(high->code.constant, margin);
   }
   if (band.low <= band.high) return band;
-  diagnostics_.report(Code::E0509, "BETWEEN goes from the smaller number to the larger one")
-      .label(node.span);
+  diagnostics_.report(Code::E0509, "BETWEEN takes the smaller number first").label(node.span);
   return std::nullopt;
 }
 
@@ -315,8 +313,8 @@ void Variables::smooth(const ast::Check& node, const Typed& input, ir::Check& re
   }
   const Unit& second = canonical_unit(vm::Dimension::duration);
   diagnostics_
-      .report(Code::E0509, "SMOOTH can look at " + std::to_string(vm::kMaxWindow) +
-                               " samples, and this is " + std::to_string(window))
+      .report(Code::E0509, "SMOOTH can use at most " + std::to_string(vm::kMaxWindow) +
+                               " samples, but this is " + std::to_string(window))
       .label(node.smooth->span)
       .label(input.span, "a sample every " + format_value(period, second), false)
       .helps("smooth over at most " + format_value(period * vm::kMaxWindow, second) +

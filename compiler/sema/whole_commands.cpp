@@ -53,16 +53,16 @@ bool Commands::says_twice(const Recipient& to, const std::vector<Given>& given,
     return true;
   };
   if (is_given(result, vm::Param::to) && is_given(result, vm::Param::by))
-    return report("where this goes is given twice", vm::Param::by,
-                  "`TO` says the place, `BY` how far it is from here: leave one of them out");
+    return report("the position is given twice", vm::Param::by,
+                  "`TO` gives a position, `BY` a distance from here: remove one of them");
   if (is_given(result, vm::Param::to) && is_given(result, vm::Param::at) && gets_power(to.actuator))
-    return report("how much power this gets is given twice", vm::Param::at,
-                  "`TO` says it, `AT` and words such as SLOWLY do, too: leave one of them out");
+    return report("the power is given twice", vm::Param::at,
+                  "`TO` sets it, and so do `AT` and words such as SLOWLY: remove one of them");
   if (to.verb.action != vm::Action::move) return false;
   if (is_given(result, vm::Param::at) && is_given(result, vm::Param::over))
-    return report("how fast this goes is given twice", vm::Param::over,
-                  "`OVER` says how long the way takes, `AT` and words such as SLOWLY how fast it "
-                  "is: leave one of them out");
+    return report("the speed is given twice", vm::Param::over,
+                  "`OVER` sets how long the movement takes, `AT` and words such as SLOWLY its "
+                  "speed: remove one of them");
   return is_given(result, vm::Param::to) && goes_two_ways(to, given);
 }
 
@@ -77,10 +77,10 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   const std::string name(std::get<ast::Word>(given[*way].argument->value).name.text);
   const Typed& number = given[*place].number;
   Diagnostic& d = to.diagnostics
-                      .report(Code::E0505, "`TO` is a place, wherever it is now, and `" + name +
-                                               "` a way from here: leave one of them out")
+                      .report(Code::E0505, "`TO` gives a position, but `" + name +
+                                               "` a direction from here: remove one of them")
                       .label(word)
-                      .label(target, "the place", false);
+                      .label(target, "the position", false);
   if (number.digits.empty()) return true;
   const bool back = to.actuator.find_word(name)->value < 0;
   const bool same = number.code.constant == 0 || back == (number.code.constant < 0);
@@ -89,9 +89,10 @@ bool Commands::goes_two_ways(const Recipient& to, const std::vector<Given>& give
   const std::string literal =
       number.digits + std::string(number.unit == nullptr ? "" : number.unit->spelling);
   const std::string to_place = "TO " + (same ? literal : negated(number));
-  if (same || can_reach(to.actuator, number)) d.helps("to that place: `" + to_place + "`");
+  if (same || can_reach(to.actuator, number))
+    d.helps("to move to that position: `" + to_place + "`");
   if (number.code.constant > 0 && to.verb.has(vm::Param::by))
-    d.helps("so far from here: `" + name + " BY " + literal + "`");
+    d.helps("to move that far from here: `" + name + " BY " + literal + "`");
   if (!beside || (!same && !can_reach(to.actuator, number))) return true;
   const bool distance = number.dimension() == vm::Dimension::length && !same;
   d.fix(both, distance ? name + " BY " + literal : to_place, Applicability::likely);
@@ -110,8 +111,8 @@ void Commands::warn_of_a_sweep(const Recipient& to, const std::vector<Given>& gi
       .report(Code::W0221, word.shown() + " does not say how far: " + to.actuator.name.shown() +
                                " sweeps over its whole range and back")
       .label(word.span)
-      .helps("so far from here: `" + std::string(word.text) + " BY 20deg`; to a place: `TO 20deg`")
-      .helps("if a sweep is meant, leave " + word.shown() + " out");
+      .helps("say how far: `" + std::string(word.text) + " BY 20deg`, or where to: `TO 20deg`")
+      .helps("if you want a sweep, remove " + word.shown());
 }
 
 // A move to a position and a level that is held happen once. Drivers repeat only sweeps and blinks, which have no end.
@@ -127,9 +128,9 @@ bool Commands::repeats_nothing(const Recipient& to, const std::vector<Given>& gi
   const std::string repeat = "REPEAT " + (digits.empty() ? "…" : digits) + " TIMES";
   to.diagnostics
       .report(Code::E0505,
-              "`TIMES` does nothing beside `" + std::string(beside) + "`: that is done once")
+              "`TIMES` has no effect with `" + std::string(beside) + "`: that happens only once")
       .label(given[*times].argument->span)
-      .helps("leave it out; to do this more than once, write `" + repeat + "`, this and `END`");
+      .helps("remove it; to repeat the command, put it between `" + repeat + "` and `END`");
   return true;
 }
 
@@ -183,7 +184,7 @@ void Commands::help_with_files(const Recipient& to, Diagnostic& d) {
   if (!to.diagnostics.may_search(to.actuator.words.size())) return;
   const std::vector<std::string> files = contents_of(to.actuator, to.verb);
   d.helps(files.empty()
-              ? "list its files under \"sounds\" in robot.json, and write which one in quotes"
+              ? "list its files under \"sounds\" in robot.json, and write one of them in quotes"
               : "write one of its files in quotes: " + list_names(files, "or"));
 }
 
@@ -199,8 +200,7 @@ bool Commands::lacks_content(const ir::Command& command, Span span) {
   if (contents.empty()) return false;
   diagnostics_.report(Code::E0514, "this does not say what to " + verb->name)
       .label(span)
-      .helps((contents.size() > 1 ? "write one of these behind it: " : "write it behind: ") +
-             list_names(contents, "or"))
+      .helps((contents.size() > 1 ? "add one of these: " : "add ") + list_names(contents, "or"))
       .fix({span.file, span.end, span.end}, " " + contents.front(), Applicability::placeholder);
   return true;
 }

@@ -66,8 +66,7 @@ private:
     const Unit& second = canonical_unit(vm::Dimension::duration);
     diagnostics_
         .report(Code::E0509, "this TEST would take " + format_value(length, second) +
-                                 ", and one takes at most an hour, " +
-                                 format_value(kLongestTest, second))
+                                 "; the limit is an hour, " + format_value(kLongestTest, second))
         .label(span);
     return std::nullopt;
   }
@@ -95,9 +94,9 @@ private:
     const auto value = reading(node, *channel, span);
     if (!at || !value) return;
     if (*at < now_) {
-      diagnostics_.report(Code::E0509, "this time is over already where it stands")
+      diagnostics_.report(Code::E0509, "this time has already passed at this point")
           .label(node.at->span)
-          .helps("in a TEST, time only goes on: put this line further up");
+          .helps("in a TEST, time only moves forward: move this line further up");
       return;
     }
     now_ = *at;
@@ -111,8 +110,7 @@ private:
     if (!sensor.algorithm) return true;
     diagnostics_.report(Code::E0509, sensor.name.shown() + " is an algorithm and cannot be fed")
         .label(span)
-        .helps("feed what it makes its readings of: " +
-               robot_.sensors[sensor.algorithm->input].name.shown());
+        .helps("feed its input instead: " + robot_.sensors[sensor.algorithm->input].name.shown());
     return false;
   }
 
@@ -173,11 +171,11 @@ private:
     }
     diagnostics_
         .report(Code::E0509, "`" + names_.channel_name(ref) +
-                                 "` cannot measure this: it goes from " +
+                                 "` cannot measure this: its range is " +
                                  format_value(channel.min, *channel.unit) + " to " +
                                  format_value(channel.max, *channel.unit))
         .label(expr.span)
-        .label(channel.unit_span, "its range is said here", false);
+        .label(channel.unit_span, "its range is set here", false);
     return std::nullopt;
   }
 
@@ -206,14 +204,14 @@ private:
     if (node.within == nullptr && !stopped) {
       diagnostics_.report(Code::E0409, "this `EXPECT` does not say how long it waits")
           .label(span)
-          .helps("write how long behind it: `WITHIN 1s`");
+          .helps("add how long, such as `WITHIN 1s`");
       return;
     }
     std::optional<std::uint32_t> times;
     if (node.times && !(times = whole(*node.times, 0))) return;
     const auto end = within(node.within);
     if (stopped && times) {
-      diagnostics_.report(Code::E0409, "`STOPPED` is not counted").label(node.times->span);
+      diagnostics_.report(Code::E0409, "`STOPPED` cannot be counted").label(node.times->span);
       return;
     }
     if (stopped) {
@@ -223,9 +221,9 @@ private:
     // One command for a group, or one for each of its members.
     for (ir::Command& command : commands_.translate(node.command)) {
       if (command.word && find_place(command.word->name)) {
-        diagnostics_.report(Code::E0409, "a TEST compares texts as they are said")
+        diagnostics_.report(Code::E0409, "a TEST compares the whole text that is said")
             .label(span)
-            .helps("write the whole text in quotes, as it is then: `\"You have 3 points\"`");
+            .helps("write the final text in quotes: `\"You have 3 points\"`");
         return;
       }
       ExpectedCommand expected{node.no,
@@ -247,7 +245,7 @@ private:
                                  ? std::get_if<ast::Word>(&node.command.arguments.front().value)
                                  : nullptr;
     if (word == nullptr) {
-      diagnostics_.report(Code::E0504, "`EXPECT STOPPED` names one actuator or group").label(span);
+      diagnostics_.report(Code::E0504, "`EXPECT STOPPED` needs one actuator or group").label(span);
       return;
     }
     const auto target = commands_.find_stopped(word->name);
@@ -293,9 +291,9 @@ private:
   }
 
   void report_moment(Span span) {
-    diagnostics_.report(Code::E0409, "`EXPECT` looks at one moment at a time")
-        .label(span, "this needs the past, or chance")
-        .helps("expect something that can be seen at one moment, WITHIN some time");
+    diagnostics_.report(Code::E0409, "`EXPECT` can test only one moment")
+        .label(span, "this depends on the past, or on chance")
+        .helps("expect something that is true at one moment, WITHIN some time");
   }
 
   void name_channel(ChannelRef channel) {

@@ -116,7 +116,7 @@ TEST_CASE(
   const std::string program = robot_with(folder, "modules/none.so");
   const Outcome needed = rsc({"check", program});
   CHECK(needed.exit == 1);
-  CHECK_THAT(needed.err + needed.out, Contains("without its module, the file "));
+  CHECK_THAT(needed.err + needed.out, Contains("needs its module, the file "));
   folder.write("robot.rsl", "WHEN skin LEVEL IS firm\nDO SAY \"skin\"\nEND\n");
   const Outcome missing = rsc({"check", program});
   CHECK(missing.exit == 0);
@@ -132,7 +132,7 @@ TEST_CASE("a module that was not made yet is the one thing that is said, and how
   INFO(checked.out);
   CHECK(said.at("errors") == 1);
   CHECK(said.at("warnings") == 0);
-  CHECK_THAT(checked.out, Contains("without its module, the file ") && Contains("fresh.so") &&
+  CHECK_THAT(checked.out, Contains("needs its module, the file ") && Contains("fresh.so") &&
                               Contains("cmake --build build"));
 }
 

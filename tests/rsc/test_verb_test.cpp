@@ -305,29 +305,29 @@ TEST_CASE("mistakes in a TEST are shown with their place, and no test runs") {
   for (const auto& [steps, message] : std::vector<Mistake>{
            {"AT 2s toch LEVEL = 1", "E0501"},
            {"AT 2s touch LEVEL = 5N", "E0301"},
-           {"AT 2s touch LEVEL = 50", "`touch LEVEL` cannot measure this: it goes from 0 to 10"},
+           {"AT 2s touch LEVEL = 50", "`touch LEVEL` cannot measure this: its range is 0 to 10"},
            {"AT 2s touch LEVEL = \"hard\"", "gives numbers, not words"},
            {"AT 2s touch LEVEL = TRUE", "is not true or false"},
            {"AT 2s button = 1", "gives words, not numbers"},
            {"AT 2s button = \"presed\"", "did you mean `pressed`?"},
-           {"AT 500ms touch LEVEL = 1", "this time is over already"},
+           {"AT 500ms touch LEVEL = 1", "this time has already passed"},
            {"WAIT 2weeks", "E0303"},
-           {"WAIT 90min", "this TEST would take 5400s, and one takes at most an hour, 3600s"},
+           {"WAIT 90min", "this TEST would take 5400s; the limit is an hour, 3600s"},
            {"EXPECT MOVE leg WITHIN 1s", "E0501"},
            {"EXPECT MOVE arms TO 3N WITHIN 1s", "E0301"},
            {"EXPECT MOVE arms", "does not say how long it waits"},
            {"EXPECT NO MOVE arms", "does not say how long it waits"},
-           {"EXPECT 2 TIMES STOPPED arms WITHIN 1s", "is not counted"},
+           {"EXPECT 2 TIMES STOPPED arms WITHIN 1s", "cannot be counted"},
            {"EXPECT 2s TIMES MOVE arms WITHIN 1s", "a whole number without a unit"},
            {"EXPECT 99999999999 TIMES MOVE arms WITHIN 1s", "a whole number from 0"},
            {"EXPECT LOG touched WITHIN 1s", "E0001"},
            {"SEED 1.5", "a whole number without a unit"},
            {"SEED 99999999999", "a whole number from 1"},
            {"SEED 0", "a whole number from 1"},
-           {"EXPECT STOPPED WITHIN 1s", "names one actuator or group"},
+           {"EXPECT STOPPED WITHIN 1s", "needs one actuator or group"},
            {"EXPECT THAT touch LEVEL WITHIN 1s", "E0302"},
            {"EXPECT THAT mood IS angry", "`mood` is never `angry`"},
-           {"EXPECT THAT mood BECOMES scared WITHIN 1s", "looks at one moment at a time"}}) {
+           {"EXPECT THAT mood BECOMES scared WITHIN 1s", "can test only one moment"}}) {
     const TestFolder robot(touched("wrong", steps));
     const Outcome outcome = test::rsc({"test", robot.program});
     CAPTURE(steps, outcome.err, outcome.out);

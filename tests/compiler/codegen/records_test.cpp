@@ -196,14 +196,14 @@ TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
 TEST_CASE("blocks nest as deeply as the robot allows, and no deeper") {
   CHECK(!build(program_of({when(kClose, nested(vm::kMaxBlocks, {kLeft}))})).bytes.empty());
   expect_too_large(program_of({when(kClose, nested(vm::kMaxBlocks + 1, {kLeft}))}),
-                   "more than 16 blocks stand in each other", 1000);
+                   "blocks are nested more than 16 levels deep", 1000);
   // A chain of IF … ELSE IF takes one block each, and the IF itself another.
   ir::Block chain = {kLeft};
   for (unsigned i = 0; i < vm::kMaxBlocks - 1; ++i)
     chain = {line(static_cast<std::uint16_t>(100 - i), ir::If{kClose, {kLeft}, chain})};
   CHECK(!build(program_of({when(kClose, chain)})).bytes.empty());
   expect_too_large(program_of({when(kClose, {line(5, ir::If{kClose, {kLeft}, chain})})}),
-                   "more than 16 blocks stand in each other", 1000);
+                   "blocks are nested more than 16 levels deep", 1000);
   ir::Pick many;
   for (unsigned i = 0; i < 40; ++i)
     many.options.push_back({1000, {line(7, move(i % 3))}});
@@ -241,7 +241,7 @@ TEST_CASE("what does not fit is said in words") {
   for (int i = 0; i < 2; ++i)
     heavy.options.push_back({2'000'000'000, {kLeft}});
   expect_too_large(program_of({when(kClose, {line(6, heavy)})}),
-                   "come to 4000000 together, and a robot takes 2147483", 60);
+                   "add up to 4000000; the limit is 2147483", 60);
 
   ir::Block talk;
   for (unsigned i = 0; i < vm::kMaxResponseOutput + 1; ++i)
@@ -256,7 +256,7 @@ TEST_CASE("what does not fit is said in words") {
                                                                    {line(9, ir::Set{0, number(1),
                                                                                     true})}})}})})},
           {plain("n")}),
-      "110000064 instructions on the robot, and at most 1000000 may run in it", 80);
+      "110000064 instructions on the robot; the limit is 1000000", 80);
   variables.resize(65, plain("w"));
   expect_too_large(program_of({at_start({kLeft})}, variables), "65 channels and variables");
 }

@@ -81,7 +81,7 @@ TEST_CASE("the first words say whether a rule looks at a moment or at a time") {
         "As soon as proximity DISTANCE becomes less than 30cm");
   CHECK(first_line("WHILE proximity DISTANCE < 30cm") ==
         "While proximity DISTANCE is less than 30cm");
-  CHECK(first_line("EVERY 3s TO 7s") == "Every 3s to 7s, as chance has it");
+  CHECK(first_line("EVERY 3s TO 7s") == "Every 3s to 7s, at random");
   CHECK(first_line("EVERY 3s") == "Every 3s");
   CHECK(first_line("WHEN a > 1 AND b > 2") ==
         "As soon as it becomes true that a is more than 1 and b is more than 2");
@@ -143,7 +143,7 @@ TEST_CASE("every statement in words") {
   CHECK(stmt("WAIT 2s") == "    - wait 2s\n");
   CHECK(stmt("WAIT UNTIL a > 1") == "    - wait until a is more than 1\n");
   CHECK(stmt("WAIT UNTIL a > 1 WITHIN 3s") ==
-        "    - wait until a is more than 1, but at most 3s\n");
+        "    - wait until a is more than 1, for at most 3s\n");
   CHECK(stmt("THEN") == "    - wait until everything started so far is done\n");
   CHECK(stmt("STOP ALL") == "    - stop all actuators\n");
   CHECK(stmt("STOP arms") == "    - stop arms\n");
@@ -159,8 +159,7 @@ TEST_CASE("every statement in words") {
         "    - again and again, until something interrupts it:\n        - wait 1s\n");
   CHECK_THAT(stmt("PICK ONE\nOPTION 60% WAIT 1s\nOPTION 40% WAIT 2s\nEND"),
              Contains("the larger its number") && Contains("- option 60%:"));
-  CHECK_THAT(stmt("PICK ONE\nOPTION WAIT 1s\nOPTION WAIT 2s\nEND"),
-             Contains("each as often as the others"));
+  CHECK_THAT(stmt("PICK ONE\nOPTION WAIT 1s\nOPTION WAIT 2s\nEND"), Contains("all equally likely"));
 }
 
 TEST_CASE("modifiers are told in words a teacher understands") {
@@ -168,9 +167,9 @@ TEST_CASE("modifiers are told in words a teacher understands") {
       told("WHEN a > 60C COOLDOWN 10s MARGIN 5C RESTARTING WAITING 2s DO\n  SHOW face\nEND");
   CHECK_THAT(text, Contains("After it has started, it does not start again for 10s."));
   CHECK_THAT(text, Contains("stays true until the value is 5C back past its limit"));
-  CHECK_THAT(text, Contains("If it becomes true again while this is still going on, it starts "
+  CHECK_THAT(text, Contains("If it becomes true again while this is still running, it starts "
                             "again from the top."));
-  CHECK_THAT(text, Contains("it waits for that, but at most 2s."));
+  CHECK_THAT(text, Contains("it waits for at most 2s."));
   CHECK_THAT(told("WHEN a > 60C COOLDOWN 10s DO\n  SHOW face\nELSE\n  SHOW face\nEND"),
              Contains("After a side has started, that side does not start again for 10s."));
   const std::string plain = told("WHEN a > 60C DO\n  SHOW face\nEND");
@@ -246,8 +245,8 @@ TEST_CASE("a side of a rule with ELSE waits as long as it takes, whatever WAITIN
     const std::string text =
         told("WHEN a > 1 " + waiting + " DO\n  SHOW face\nELSE\n  HIDE face\nEND");
     CHECK_THAT(text, !Contains("at most 1s") &&
-                         Contains("that side is done as soon as all of it is free, if it is still "
-                                  "the right one.\n"));
+                         Contains("that side runs as soon as all of it is free, if it still "
+                                  "applies.\n"));
   }
 }
 
@@ -263,7 +262,7 @@ TEST_CASE("a MARGIN belongs to the comparisons, and NOT turns round what they gi
       "so that it does not flicker";
   CHECK_THAT(margin("a < 50cm AND b < 3cm"), Contains(each + ".\n"));
   for (const char* const turned : {"NOT (a < 50cm)", "a < 50cm AND NOT b"})
-    CHECK_THAT(margin(turned), Contains(each + "; NOT turns round what that gives.\n"));
+    CHECK_THAT(margin(turned), Contains(each + "; NOT reverses the result.\n"));
 }
 
 TEST_CASE("what the modules of a program do is told as if it stood in the program") {

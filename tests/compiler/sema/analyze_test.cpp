@@ -181,7 +181,7 @@ TEST_CASE("what is followed may be handed on, but not grow without end") {
   CHECK(!compile_text(program("MOVE"), common_robot()).image.empty());
   const Result result = compile_text(program("FOLLOW"), common_robot());
   CHECK(result.image.empty());
-  CHECK(messages(result).find("cannot be worked out again and again") != std::string::npos);
+  CHECK(messages(result).find("cannot be recalculated all the time") != std::string::npos);
 }
 
 TEST_CASE("SET, RAISE, LOWER and SIGNAL") {
@@ -287,7 +287,7 @@ TEST_CASE("two modules that bring one name: both places, and a way out") {
   CHECK(both.image.empty());
   CHECK(messages(both).find("the name `nod` is given twice") != std::string::npos);
   CHECK(messages(both).find("<gestures>:") != std::string::npos);
-  CHECK(messages(both).find("use one of the two modules") != std::string::npos);
+  CHECK(messages(both).find("use only one of the two modules") != std::string::npos);
 }
 
 TEST_CASE("a MOTION of a module needs the actuators that it moves when somebody performs it") {
