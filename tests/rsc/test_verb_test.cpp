@@ -460,7 +460,7 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
       {"explain", robot.write("unknown.rsl", "WHEN tuch LEVEL > 3 DO\n  LOG \"x\"\nEND\n")});
   CHECK(outcome.exit == 1);
   CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Contains("E0301") && Contains("did you mean `touch`?"));
+  CHECK_THAT(outcome.err, Contains("E0501") && Contains("did you mean `touch`?"));
   CHECK(test::rsc({"explain", robot.program, "--config", robot.path("none.json")}).exit == 3);
   outcome = test::rsc({"explain", "E0300"});
   CHECK(outcome.exit == 2);
