@@ -313,7 +313,11 @@ void forge(test::Way Robot::*direction, std::string_view input) {
 
 }  // namespace
 
-void board(std::string_view input) { forge(&Robot::to_board, input); }
-void host(std::string_view input) { forge(&Robot::to_host, input); }
+void board(std::string_view input) {
+  forge(&Robot::to_board, input);
+}
+void host(std::string_view input) {
+  forge(&Robot::to_host, input);
+}
 
 }  // namespace robosync::fuzz
