@@ -43,8 +43,8 @@ oracle::Snapshot snapshot_of(const World& world) {
 }
 
 Effects expected_effects(const ir::Block& block, const std::vector<ir::Variable>& variables,
-                     World& world, unsigned pauses, oracle::Chance chance,
-                     const std::function<void(World&)>& pass_time) {
+                         World& world, unsigned pauses, oracle::Chance chance,
+                         const std::function<void(World&)>& pass_time) {
   oracle::Evaluator evaluator;
   oracle::Response response(block, 0);
   Effects effects;

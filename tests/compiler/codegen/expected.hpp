@@ -12,7 +12,7 @@ namespace robosync::compiler::testing {
 
 // As Runner::respond: until the end, or until it has paused `pauses` times. It draws from `chance`.
 Effects expected_effects(const ir::Block& block, const std::vector<ir::Variable>& variables,
-                     World& world, unsigned pauses, oracle::Chance chance,
-                     const std::function<void(World&)>& pass_time);
+                         World& world, unsigned pauses, oracle::Chance chance,
+                         const std::function<void(World&)>& pass_time);
 
 }  // namespace robosync::compiler::testing

@@ -109,7 +109,7 @@ void Runner::take_output(Effects& effects) {
 }
 
 Effects Runner::respond(std::size_t rule, World& world, unsigned pauses,
-                      const std::function<void(World&)>& pass_time) {
+                        const std::function<void(World&)>& pass_time) {
   Effects effects;
   const auto response = image_.rules[behavior_.first_rule + rule].then_response;
   const vm::Word* code = image_.code.data() + image_.responses[response].start;

@@ -31,7 +31,7 @@ public:
   // `world` is handed to `pass_time`, with `now` already brought on. Variables that were set are
   // set in `world` then.
   Effects respond(std::size_t rule, World& world, unsigned pauses,
-                const std::function<void(World&)>& pass_time = {});
+                  const std::function<void(World&)>& pass_time = {});
 
   vm::Machine machine;
   bool ended = false;  // the last response did

@@ -22,7 +22,7 @@ constexpr unsigned kPauses = 50;
 
 // What an AT START response does in the world.
 Effects effects(ir::Block block, World world, std::vector<ir::Variable> variables = {},
-            const std::function<void(World&)>& pass_time = {}) {
+                const std::function<void(World&)>& pass_time = {}) {
   for (const ir::Variable& one : variables)
     world.variables.push_back(one.initial);
   const Built built = must_build(program_of({at_start(std::move(block))}, std::move(variables)));
@@ -108,11 +108,12 @@ TEST_CASE("a response sees what it has set, clamped") {
   const ir::Statement lower = line(11, ir::Set{0, channel(0), true});
   const std::vector<ir::Variable> joy = {ranged("joy", 0, 100)};
   CHECK(effects({raise, raise, turn_to(variable(0))}, {}, joy) == Effects{"left 0:100000"});
-  CHECK(effects({raise, lower, turn_to(variable(0))}, with_level(-90000), joy) == Effects{"left 0:0"});
+  CHECK(effects({raise, lower, turn_to(variable(0))}, with_level(-90000), joy) ==
+        Effects{"left 0:0"});
   CHECK(effects({line(10, ir::Set{0, number(150), false}), turn_to(variable(0))}, {}, joy) ==
         Effects{"left 0:100000"});
   CHECK(effects({line(10, ir::Set{0, channel(0), false}), turn_to(variable(0))}, with_level(-5000),
-              joy) == Effects{"left 0:0"});
+                joy) == Effects{"left 0:0"});
 }
 
 TEST_CASE("SET assigns, RAISE only shifts, and unknown does neither") {
