@@ -222,9 +222,15 @@ private:
   std::size_t bytes_sent_ = 0;
 };
 
+// Not the bytes that were sent: a frame was changed in spite of its checksum.
+bool is_damaged(const link::ActivateResult& result) {
+  const auto refusal = static_cast<vm::Refusal>(result.refusal);
+  return refusal == vm::Refusal::bad_crc || refusal == vm::Refusal::wrong_name;
+}
+
 // Finishes a started transfer. The activation request follows the last piece without waiting; the board reports what was lost
 // before it. A board that was reset, or that started another host's transfer, has nothing to activate: then the rest is sent
-// again.
+// again. A damaged image is sent again once.
 UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byte> image,
                     const UploadOptions& options, Transport::Clock::time_point start) {
   const auto give_up = start + options.timeout.value_or(patience(image.size()));
@@ -232,7 +238,11 @@ UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byt
   result.bytes = image.size();
   transfer.run(Until::sent, give_up);
   result.activation = client.activate(transfer.wish());
-  while (result.activation.refusal == link::kNothingToActivate && client.now() < give_up) {
+  bool repeats = true;
+  while (client.now() < give_up) {
+    const bool nothing = result.activation.refusal == link::kNothingToActivate;
+    if (!nothing && !(repeats && is_damaged(result.activation))) break;
+    repeats = repeats && nothing;
     transfer.order();
     transfer.begin();
     transfer.run(Until::there, give_up);

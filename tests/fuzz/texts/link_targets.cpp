@@ -162,7 +162,7 @@ public:
         robot_(boards::kMemory, &memory_,
                script.byte() % 2 == 0 ? link::ResetReason::software : link::ResetReason::power) {
     robot_.each_tick = [this] { look(); };
-    (void)upload(program(0));
+    upload(program(0));
   }
 
   Robot& robot() { return robot_; }
@@ -186,8 +186,7 @@ public:
       (void)client.status();
       if (client.hello().pairing == link::Pairing::paired) return;  // by whom the script let in
       client.resume();
-      // The image's checksum finds what was forged in an unfinished transfer: the board refuses that image, and takes the next.
-      if (!upload(program(1))) (void)upload(program(1));
+      upload(program(1));
     } catch (const tool::Failure& failure) {
       require(false, failure.what());
     }
@@ -197,14 +196,13 @@ public:
 private:
   static constexpr unsigned kMaxActions = 24;
 
-  // True if the board runs it.
-  bool upload(const tool::Program& which) {
+  void upload(const tool::Program& which) {
     tool::Client client(robot_, kPatience, true);
     tool::UploadOptions options;
     options.timeout = milliseconds(600);
     options.trial = milliseconds(100);
     options.base = program(script_.byte()).bytes();
-    return tool::upload(client, client.hello(), which.bytes(), options).activation.running != 0;
+    (void)tool::upload(client, client.hello(), which.bytes(), options);
   }
 
   void act() {
@@ -212,8 +210,7 @@ private:
     const std::uint8_t argument = script_.byte();
     switch (argument % 8) {
       case 0:
-        (void)upload(program(argument / 8));
-        return;
+        return upload(program(argument / 8));
       case 1:
         return ask(client);
       case 2:

@@ -1,11 +1,14 @@
 // Uploads over a line that damages one frame, loses many, or breaks off; and damaged images.
 // In every millisecond the robot runs either the old program or the new one, and in the end an
 // upload succeeds.
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 
 #include <catch2/catch.hpp>
 
+#include "link/frame.hpp"
 #include "rsc/device/client.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
@@ -190,6 +193,30 @@ TEST_CASE("another host begins a transfer before the activation: the upload star
     Bytes both(wire.begin(), wire.begin() + static_cast<std::ptrdiff_t>(length));
     both.insert(both.end(), frame.begin(), frame.end());
     return both;
+  });
+  CHECK(scene.upload().activation.running == 1);
+  CHECK(done);
+  CHECK(scene.runs_new());
+}
+
+TEST_CASE(
+    "a piece that is changed in spite of its checksum costs a second transfer, not the upload") {
+  const tool::Program old_program = test::program(3);
+  const tool::Program new_program = test::program(4);
+  Scene scene(old_program, new_program);
+  bool done = false;
+  scene.robot.to_board.set([&](const Bytes& frame, std::size_t) {
+    link::FrameDecoder decoder;
+    const bool whole =
+        std::ranges::any_of(frame, [&](std::byte byte) { return decoder.push(byte); });
+    if (done || !whole || decoder.frame().type != link::MessageType::pieces) return frame;
+    done = true;
+    Bytes payload(decoder.frame().payload.begin(), decoder.frame().payload.end());
+    payload.back() ^= std::byte{1};
+    std::array<std::byte, link::kMaxEncodedFrame> wire{};
+    const std::size_t length =
+        link::encode_frame(decoder.frame().type, decoder.frame().sequence, payload, wire);
+    return Bytes(wire.begin(), wire.begin() + static_cast<std::ptrdiff_t>(length));
   });
   CHECK(scene.upload().activation.running == 1);
   CHECK(done);
