@@ -86,22 +86,22 @@ compiler::Result read_alone(const std::string& file) {
   return result;
 }
 
-bool has_configuration(const ExplainOptions& options) {
-  if (!options.config.empty()) return true;
+// Empty if the program has none. A configuration named by --config must exist.
+std::string configuration_of(const ExplainOptions& options) {
+  if (!options.config.empty()) return options.config;
   try {
-    (void)find_configuration(options.what, options.config);
-    return true;
+    return find_configuration(options.what, "").string();
   } catch (const Failure&) {
-    return false;
+    return "";
   }
 }
 
 void explain_file(const ExplainOptions& options) {
   CompileOptions how;
-  how.config = options.config;
+  how.config = configuration_of(options);
   how.judged = Judged::not_at_all;
   const compiler::Result result =
-      has_configuration(options) ? compile_file(options.what, how) : read_alone(options.what);
+      how.config.empty() ? read_alone(options.what) : compile_file(options.what, how);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
   if (result.diagnostics.errors() > 0) {
     if (options.format == Format::json)
