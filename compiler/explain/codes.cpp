@@ -47,7 +47,7 @@ std::string code_text(Code code) {
   if (found == kTexts.end()) return text;
   text += fmt::format("\n{}\n", found->meaning);
   if (!found->wrong.empty()) text += "\nFor example:\n\n" + indented(found->wrong);
-  if (!found->mended.empty()) text += "\nMended:\n\n" + indented(found->mended);
+  if (!found->mended.empty()) text += "\nCorrect:\n\n" + indented(found->mended);
   return text;
 }
 

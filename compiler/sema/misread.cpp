@@ -53,7 +53,7 @@ bool Commands::is_second_command(const ast::Command& command, std::size_t place)
   const Span before = place == 0 ? command.verb.span : command.arguments[place - 1].span;
   diagnostics_.report(Code::E0505, word->name.shown() + " begins a second command on this line")
       .label(word->name.span)
-      .helps("write each command on its own line")
+      .helps("each command goes on a line of its own")
       .fix({before.file, before.end, word->name.span.begin}, "\n", Applicability::likely);
   return true;
 }
@@ -150,7 +150,7 @@ bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
   const Unit* const unit = find_unit(word->name.text);
   if (!bare || unit == nullptr || is_known_word(word->name.text)) return false;
   const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
-  diagnostics_.report(Code::E0505, "there must be no space between a number and its unit")
+  diagnostics_.report(Code::E0505, "a unit follows its number without a space")
       .label(both(command.arguments[place], next))
       .helps("write the unit right after the number, as in `30" + std::string(unit->spelling) + "`")
       .fix(gap, "");

@@ -92,5 +92,5 @@ TEST_CASE("a code is found in any case, and its text has all parts") {
   const std::string text = explain::code_text(Code::E0301);
   CHECK_THAT(text, Contains("E0301 (error): units of different kinds\n") &&
                        Contains("For example:\n\n    WHEN proximity DISTANCE < 20N DO\n") &&
-                       Contains("Mended:\n\n    WHEN proximity DISTANCE < 20cm DO\n"));
+                       Contains("Correct:\n\n    WHEN proximity DISTANCE < 20cm DO\n"));
 }
