@@ -75,7 +75,7 @@ FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"rang
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
 HAPPY = [".....", ".#.#.", ".....", "#...#", ".###."]
 LOOKS = 4000
-# The bus of the parts on the board: QEMU has a stub of it, which stores what is written and always reports that it has stopped.
+# The bus of the parts on the board. QEMU has only its registers: they store what is written, and always report that the bus has stopped.
 BUS_WRITE = re.compile(r"microbit_i2c_write: 0x([0-9a-f]+) <- 0x([0-9a-f]+)")
 TWIM0, BUS_INTERRUPT, CORE = 0x4000_3000, 3, "/machine/nrf51/armv6m"
 ENABLE, CLOCK_PIN, DATA_PIN, ADDRESS = (TWIM0 + at for at in (0x500, 0x508, 0x50C, 0x588))
