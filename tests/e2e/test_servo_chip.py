@@ -25,7 +25,7 @@ WHILE_NOTHING_MOVES = 1.0  # seconds
 ADDRESS = {NOBODY: 0x40, STAND_IN: 0x41}
 RUNS, ASLEEP = 32_000, 17_000  # thousandths of a degree: MODE1 would be 0x20, 0x11
 PROGRAM = """
-WHEN near X > 10 DO MOVE arm TO 90deg AT 10deg/s END
+WHEN near X > 10 DO MOVE arm TO 90deg AT 90deg/s END
 EVERY 100ms DO LOG "goes on" END
 """
 BY_ITSELF = PROGRAM.replace("WHEN near X > 10 DO", "AT START DO")
@@ -71,13 +71,19 @@ class ServoChip(DebuggedTest):
         for value in (0, 20):
             rsc.run("feed", f"near.X={value}", "--port", self.board.port)
 
+    def move(self):
+        """Makes the arm move, and waits until it is there: a trigger is ignored while its response is running."""
+        reader = LineReader("feed", "near.X=0", "near.X=20", "--watch", f"{PATIENCE}s", "--port", self.board.port)
+        self.assertTrue(reader.wait_for(lambda lines: "arm is done" in "".join(lines), PATIENCE), reader.lines)
+        reader.stop()
+
     def begin(self):
         """Uploads the program and makes the arm move."""
         done = self.say("upload", self.written(STAND_IN))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("does not answer", done.stderr)
         self.assertEqual(self.level(STAND_IN), OFF)
-        self.order()
+        self.move()
         self.await_level(STAND_IN, ON)
         self.assertEqual(self.level(NOBODY), OFF)
 
@@ -105,7 +111,7 @@ class ServoChip(DebuggedTest):
         self.stays_off(STAND_IN)
         self.say("resume")
         self.stays_off(STAND_IN)
-        self.order()
+        self.move()
         self.await_level(STAND_IN, ON)
         self.say("upload", self.written(STAND_IN, WITHOUT_ARM))
         self.await_level(STAND_IN, OFF)
@@ -117,7 +123,7 @@ class ServoChip(DebuggedTest):
         self.await_level(STAND_IN, OFF)
         self.heat(RUNS)
         self.stays_off(STAND_IN)
-        self.order()
+        self.move()
         self.await_level(STAND_IN, ON)
 
     def heat(self, temperature):
