@@ -13,8 +13,8 @@ MISSED = "MISSED"
 HEAD = """# Measurements
 
 `scripts/bench --markdown` prints this page. The unit `insn` is executed Cortex-M4 instructions, not cycles. A plugin counts them
-exactly (`bench/count_plugin/`), in QEMU 7.2 for `mps2-an386` and in QEMU 10.0 for the other boards. Figures in bytes count what the
-linker kept. Times are wall-clock time on the machine that printed this page, except those of `compile/…`, which are CPU time.
+exactly (`bench/count_plugin/`), in QEMU 7.2 for `mps2-an386` and in QEMU 10.0 for the other boards. Figures in bytes count what
+the linker kept. Times are wall-clock time on the machine that printed this page, except those of `compile/…`, which are CPU time.
 `scripts/bench --only GROUP` measures one group, such as `board`.
 
 These files define each figure: `bench/figures.py`, `bench/workloads.py`, `bench/growth.py`, `bench/idle.py`, `bench/answer.py`,
@@ -44,8 +44,8 @@ Virtual machine:
 * `vm/W3_staged` is W3 in the shipped firmware, until the values that it has SET are staged for the next step.
 * `vm/bytes_W3`: the response takes 88 bytes. The period of its EVERY takes 8 more; the peers' step has no such period.
 * `vm/verify_per_word` is measured on the paper's image, which is mostly wiring and names. `vm/verify_64k` is measured on an image
-  of 1,000 rules in 64 behaviours, at the format's limit of 64 KB (`image/largest_bytes`). That image is nearly all rules and code,
-  which cost more per word.
+  of 1,000 rules in 64 behaviours, at the format's limit of 64 KB (`image/largest_bytes`). That image is nearly all rules and
+  code, which cost more per word.
 * `vm/flash` has a bar for the whole language. The bar of the first design (4,096) covered only arithmetic and commands.
 * `vm/ram_per_thread` is everything that a behaviour takes.
 
@@ -67,16 +67,17 @@ Firmware:
 
 * `firmware/flash` exceeds its bar. Memory as large as the board, laid out for each program, took one kilobyte. Programs and
   numbers that survive a power cycle took four, algorithms four and a half, and the owner's signature ten and a half.
-* `firmware/power_up_to_program` is the time until the paper's program, loaded from the board's store, begins. It ranges from 8,000
-  to 15,000, depending on how often the host sends requests meanwhile.
-* `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those alone.
+* `firmware/power_up_to_program` is the time until the paper's program, loaded from the board's store, begins. It ranges from
+  8,000 to 15,000, depending on how often the host sends requests meanwhile.
+* `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those
+  alone.
 * `ear/block` is the work for 20 ms of sound at the most expensive pitch, on a board that had a microphone.
 
 Safety and link:
 
-* `safety/stop_frame_to_safe_loaded` is the maximum of 20 stops. This machine chooses their moments, not the robot. It is about 560
-  if no stop arrives while the tick, or a thread that blocks context switches, handles dozens of threads. The highest value seen
-  is 1,584, which stays recorded.
+* `safety/stop_frame_to_safe_loaded` is the maximum of 20 stops. This machine chooses their moments, not the robot. It is about
+  560 if no stop arrives while the tick, or a thread that blocks context switches, handles dozens of threads. The highest value
+  seen is 1,584, which stays recorded.
 * `link/answer` is how long a host waits for an answer if the robot's program leaves the link no processor time. It runs from the
   last byte of the request until the answer is ready for the line. It is the maximum of 160 requests at random times.
 
@@ -87,8 +88,8 @@ bars of the reference board, but none for flash and RAM.
 
 * QEMU does not emulate the I2C buses of these boards. So the benchmark plays the touch sensor through QEMU's debugger port. It
   takes the place of the driver's function, before the reading is in its mailbox. Only the firmware's instructions are counted.
-* Readings, and the bytes of `rsc monitor`'s first messages, arrive when the firmware reaches a certain place. So each figure is the
-  same in every run, to the instruction.
+* Readings, and the bytes of `rsc monitor`'s first messages, arrive when the firmware reaches a certain place. So each figure is
+  the same in every run, to the instruction.
 * `power_up_to_first_step` runs from reset until the first step of the paper's program begins. It is in the emulator's time, 16 ns
   per instruction. The firmware itself stored the program in its flash before.
 * QEMU can only read the flash of `b-l475e-iot01a` and `nucleo-l476rg`. There, a debugger performed the erasing and writing while
@@ -99,16 +100,16 @@ bars of the reference board, but none for flash and RAM.
 `compile/…` is the CPU time of `rsc check`, including its start, on the machine that printed this page
 (`bench/compile_figures.py`).
 
-* `lines_per_second`: a program of 100,000 lines that compiles. It has 2,500 lines of rules of every kind, about as many as an image
-  holds. The rest is TEST blocks.
+* `lines_per_second`: a program of 100,000 lines that compiles. It has 2,500 lines of rules of every kind, about as many as an
+  image holds. The rest is TEST blocks.
 * `rule_lines_per_second`: only these rules, which are also optimised and translated. The time for the paper's program is
   subtracted.
 * `paper`: the paper's program.
 * `growth_…`: something 2n times, compared with n times, in correct and incorrect programs (`bench/compile_programs.py`). The time
   for the paper's program is subtracted from both. `growth_of_memory` is the largest growth of memory of all these programs.
 
-A missed bar in `ms` or `lines/s` is shown but does not fail, because the machine may be slow. A growth of CPU time fails only above
-3, because other work on the machine changes it by some tenths.
+A missed bar in `ms` or `lines/s` is shown but does not fail, because the machine may be slow. A growth of CPU time fails only
+above 3, because other work on the machine changes it by some tenths.
 
 ## Figures
 
@@ -137,9 +138,9 @@ The table compares the same three workloads, in instructions:
 * W2: one round of `s = s + i * i mod 251` with whole numbers.
 * W3: one step of a mean of eight readings with hysteresis; the readings are shifted by hand.
 
-Their sources are in `examples/touch_companion` and `bench/programs`. `vm/W3_natural` above is the cost of W3 as users of RSL write
-it: a CHECK with SMOOTH and MARGIN. It runs from the new reading to its band, in the runtime, and uses a median, not a mean. The
-last column is the size of the code of W1, W2 and W3. RoboSync's programs also have {constants} bytes of constants.
+Their sources are in `examples/touch_companion` and `bench/programs`. `vm/W3_natural` above is the cost of W3 as users of RSL
+write it: a CHECK with SMOOTH and MARGIN. It runs from the new reading to its band, in the runtime, and uses a median, not a mean.
+The last column is the size of the code of W1, W2 and W3. RoboSync's programs also have {constants} bytes of constants.
 
 The peers were measured once, for the design of this VM, on their own sources and in the same way: arm-none-eabi-gcc
 12.2, -O2, hard float, QEMU 7.2 (`-M mps2-an386 -icount shift=0`). The counts are exact where a plugin counted, and accurate to 40
