@@ -108,8 +108,8 @@ bars of the reference board, but none for flash and RAM.
 * `growth_…`: something 2n times, compared with n times, in correct and incorrect programs (`bench/compile_programs.py`). The time
   for the paper's program is subtracted from both. `growth_of_memory` is the largest growth of memory of all these programs.
 
-A missed bar in `ms`, `lines/s` or `x` is shown but does not fail, because the machine may be slow. Only a `compile/growth_…` above
-3 fails. Below that, other work on the machine may be the reason: it changes the ratios of CPU times by some tenths.
+A missed bar in `ms`, `lines/s` or `x` is shown but does not fail, because the machine may be slow. Only a `compile/growth_…`
+above 3 fails. Below that, other work on the machine may be the reason: it changes the ratios of CPU times by some tenths.
 
 ## Figures
 
