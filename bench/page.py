@@ -12,85 +12,142 @@ MISSED = "MISSED"
 
 HEAD = """# Measurements
 
-Printed by `scripts/bench --markdown`. `insn` are executed Cortex-M4 instructions, counted exactly by a plugin in
-QEMU 7.2 (`bench/count_plugin/`), those of other boards than `mps2-an386` in QEMU 10.0; they are not cycles. Bytes are what the linker kept.
-Times are wall clock, of `compile/…` CPU time, on the machine that printed this page. What each figure means: `bench/figures.py`,
-`bench/workloads.py`, `bench/growth.py`, `bench/idle.py`, `bench/answer.py`, `bench/compile_figures.py` and `bench/boards.py`;
-bars: `bench/bars.json`. `scripts/bench --only GROUP` measures one group, such as `board`.
+`scripts/bench --markdown` prints this page. The unit `insn` is executed Cortex-M4 instructions, not cycles. A plugin counts them
+exactly (`bench/count_plugin/`), in QEMU 7.2 for `mps2-an386` and in QEMU 10.0 for the other boards. Figures in bytes count what
+the linker kept. Times are wall-clock time on the machine that printed this page, except those of `compile/…`, which are CPU time.
+`scripts/bench --only GROUP` measures one group, such as `board`.
 
-Bars are the design's, and none is moved to what was measured: what misses one is shown as missed. `scripts/bench` fails
-when a figure misses a bar that it met before, and when a counted figure is more than 2 % above what `bench/recorded.json`
-says: so nothing grows unnoticed. (Of the ways of a touch that this machine gives the board, 5 to 50 % above, and of what a host
-waits for, as much again: what else is due in that moment is another thing each time.) `scripts/bench --record` records what is measured now; `scripts/bench --profile NAME` says
-which functions ran while a figure was counted, and how many instructions of each.
+These files define each figure: `bench/figures.py`, `bench/workloads.py`, `bench/growth.py`, `bench/idle.py`, `bench/answer.py`,
+`bench/compile_figures.py` and `bench/boards.py`. `bench/bars.json` holds the bars.
 
-Three instructions of each switch are the time that threads ran, which no peer's figure includes. `kernel/yield_isolated` has the
-second system call in it, by which the thread that was let run takes its events. Of what misses its bar: `kernel/mailbox` compares
-with the last reading, keeps times and announces together; `kernel/lock_out_add` is while a program is loaded.
-`path/…`: no single place is dear; of the way to the command three commands take a quarter (decoded, queued, handed over),
-threads and their switches another, the rest is the step's bookkeeping for rules. `firmware/flash`: memory
-as large as the board, laid out for each program, took one kilobyte, programs and numbers that outlast the power four, algorithms four and
-a half, the owner's signature ten and a half.
-`firmware/power_up_to_program`: the paper's program from the board's store, until its time begins; 8,000 to 15,000, by how often the host asks meanwhile. `ear/block`:
-20 ms of sound, the dearest of all pitches, on a board that had a microphone. `vm/flash` has a bar of the whole language, not of the first
-design's arithmetic and commands (4,096).
-`path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them; its bands
-are in it. `firmware/idle_second_paper` is without what the bit-banged I2C bus executes, `…_i2c` is that alone.
-`vm/bytes_W3`: the response takes 88, the period of its EVERY, which the peers' step has not, 8 more.
-`safety/stop_frame_to_safe_loaded` is the most of 20 stops, whose moments this machine chooses and not the robot: where none comes
-while the tick, or who holds the switch off, has dozens of threads to see to, it is some 560; 1,584 is the most that was seen, and stays
-recorded.
-`link/answer`: how long a host waits for an answer from robots whose programs leave the link nothing, from the last byte of its
-request until the answer is ready for the line; the most of 160 requests at random times.
-`vm/W1` ends when both commands are put out, as the peers' does; `vm/W1_queue` is the same rule in the shipped firmware, until both
-are in their drivers' queues: claims, two threads and their switches included. `vm/W3_staged` is W3 in the shipped firmware, until
-what it has SET is staged for the next step. `vm/ram_per_thread` is all that a behaviour takes.
-`vm/verify_per_word` is of
-the paper's image, most of which is wiring and names; `vm/verify_64k` is of 1,000 rules in 64 behaviours at the format's
-limit of 64 KB (`image/largest_bytes`), nearly all of it rules and code, of which a word costs more.
+## Bars and recorded values
 
-`b-l475e-iot01a/…`, `microbit-v2/…` and `nucleo-l476rg/…` are of the shipped firmware of these boards, and have the bars of the reference board's; flash and RAM have none there. QEMU
-has no I2C bus of theirs: the touch sensor is played, through QEMU's debugger port, in the place of its driver's function, before the
-reading is in its mailbox; all that is counted is the firmware. Readings, and the bytes of `rsc monitor`'s first messages, come when
-the firmware has come to a certain place, so each of these figures is the same in each run, to the instruction. `power_up_to_first_step`: from reset, in the
-emulator's time, 16 ns an instruction, until the first step begins of the paper's program, which the firmware itself has kept in its flash. Of
-`b-l475e-iot01a` and `nucleo-l476rg` QEMU only reads the flash: while the program was kept, before, a debugger played what erases and writes it.
+A bar is the limit that the design sets for a figure. Bars are not adjusted to the measurements: a figure that misses its bar is
+shown as missed. `scripts/bench` fails in these cases, so that no figure grows unnoticed:
 
-`compile/…` is CPU time of `rsc check` on that machine, start included (`bench/compile_figures.py`). `lines_per_second`: a
-program of 100,000 lines that compiles: 2,500 lines of rules of every kind, about as many as an image holds, and TEST
-blocks. `rule_lines_per_second`: these rules alone, which are optimised and translated too, without what the paper's program
-takes. `paper`: that program. `growth_…`: something 2n times against n times, right and wrong programs (`bench/compile_programs.py`), in
-time beyond what the paper's takes; `growth_of_memory` is the largest of all, in memory. A missed bar in `ms` or `lines/s` is
-shown and fails nothing, for the machine may be slow. A growth of CPU time fails above 3 only: other
-work on the machine moves it by some tenths.
+* A figure misses a bar that it met when it was recorded.
+* A counted figure is more than 2 % above its value in `bench/recorded.json`.
+
+Some figures vary from run to run, because other events fall into the measured interval at different times. Their tolerance is
+higher: 5 to 50 % for the paths that start with a touch or a stop from this machine, and 100 % for `link/answer` and
+`firmware/power_up_to_program`.
+
+`scripts/bench --record` records the current values. `scripts/bench --profile NAME` shows which functions ran while a figure was
+counted, and how many instructions each of them executed.
+
+## Notes on single figures
+
+Virtual machine:
+
+* `vm/W1` ends when both commands are issued, as in the peers' measurements. `vm/W1_queue` is the same rule in the shipped
+  firmware, until both commands are in their drivers' queues. It includes the claims, two threads and their context switches.
+* `vm/W3_staged` is W3 in the shipped firmware, until the values that it has SET are staged for the next step.
+* `vm/bytes_W3`: the response takes 88 bytes. The period of its EVERY takes 8 more; the peers' step has no such period.
+* `vm/verify_per_word` is measured on the paper's image, which is mostly wiring and names. `vm/verify_64k` is measured on an image
+  of 1,000 rules in 64 behaviours, at the format's limit of 64 KB (`image/largest_bytes`). That image is nearly all rules and
+  code, which cost more per word.
+* `vm/flash` has a bar for the whole language. The bar of the first design (4,096) covered only arithmetic and commands.
+* `vm/ram_per_thread` is everything that a behaviour takes.
+
+Kernel:
+
+* Every context switch spends three instructions on the CPU time of threads. No peer's figure includes this.
+* `kernel/yield_isolated` includes the second system call, with which the thread that now runs takes its events.
+* `kernel/mailbox` misses its bar. It includes the comparison with the last reading, the timestamps and the announcement.
+* `kernel/lock_out_add` misses its bar. It is the lock-out time while threads are added, as when a program is loaded.
+
+Path of a reading:
+
+* `path/…` has no single expensive part. A quarter of the path to the command goes to three commands, which are decoded, queued
+  and handed over. Another quarter goes to threads and their context switches. The rest is the step's bookkeeping for rules.
+* `path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them. It includes
+  the bands.
+
+Firmware:
+
+* `firmware/flash` exceeds its bar. Memory as large as the board, laid out for each program, took one kilobyte. Programs and
+  numbers that survive a power cycle took four, algorithms four and a half, and the owner's signature ten and a half.
+* `firmware/power_up_to_program` is the time until the paper's program, loaded from the board's store, begins. It ranges from
+  8,000 to 15,000, depending on how often the host sends requests meanwhile.
+* `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those
+  alone.
+* `ear/block` is the work for 20 ms of sound at the most expensive pitch, on a board that had a microphone.
+
+Safety and link:
+
+* `safety/stop_frame_to_safe_loaded` is the maximum of 20 stops. This machine chooses their moments, not the robot. It is about
+  560 if no stop arrives while the tick, or a thread that blocks context switches, handles dozens of threads. The highest value
+  seen is 1,584, which stays recorded.
+* `link/answer` is how long a host waits for an answer if the robot's program leaves the link no processor time. It runs from the
+  last byte of the request until the answer is ready for the line. It is the maximum of 160 requests at random times.
+
+### Other boards
+
+`b-l475e-iot01a/…`, `microbit-v2/…` and `nucleo-l476rg/…` are figures of the shipped firmware of these boards. They have the
+bars of the reference board, but none for flash and RAM.
+
+* QEMU does not emulate the I2C buses of these boards. So the benchmark plays the touch sensor through QEMU's debugger port. It
+  takes the place of the driver's function, before the reading is in its mailbox. Only the firmware's instructions are counted.
+* Readings, and the bytes of `rsc monitor`'s first messages, arrive when the firmware reaches a certain place. So each figure is
+  the same in every run, to the instruction.
+* `power_up_to_first_step` runs from reset until the first step of the paper's program begins. It is in the emulator's time, 16 ns
+  per instruction. The firmware itself stored the program in its flash before.
+* QEMU can only read the flash of `b-l475e-iot01a` and `nucleo-l476rg`. There, a debugger performed the erasing and writing while
+  the program was stored.
+
+### Compiler
+
+`compile/…` is the CPU time of `rsc check`, including its start, on the machine that printed this page
+(`bench/compile_figures.py`).
+
+* `lines_per_second`: a program of 100,000 lines that compiles. It has 2,500 lines of rules of every kind, about as many as an
+  image holds. The rest is TEST blocks.
+* `rule_lines_per_second`: only these rules, which are also optimised and translated. The time for the paper's program is
+  subtracted.
+* `paper`: the paper's program.
+* `growth_…`: something 2n times, compared with n times, in correct and incorrect programs (`bench/compile_programs.py`). The time
+  for the paper's program is subtracted from both. `growth_of_memory` is the largest growth of memory of all these programs.
+
+A missed bar in `ms`, `lines/s` or `x` is shown but does not fail, because the machine may be slow. Only a `compile/growth_…`
+above 3 fails. Below that, other work on the machine may be the reason: it changes the ratios of CPU times by some tenths.
+
+## Figures
 
 | figure | value | unit | bar | |
 |---|---|---|---|---|"""
 
-GROWTH = """## Rules that have nothing to do
+GROWTH = """## Idle rules
 
-A reading is fed that concerns one rule among N, which stand evenly in the behaviours; each has a response of its own
-(`bench/growth.py`). Instructions from the reading to the end of the step and of all that came of it, kernel and the
-driver's command included, by the runtime linked as in the firmware (`bench/firmware/step_bench.cpp`). Up to 40 rules stand
-in 10 behaviours, more in 64; there is more memory than the board is said to have. Before, each channel had a first reading; a
-behaviour's first step evaluates all of its rules, so these cost more, once: `path/first_step_…`.
+One reading is fed that concerns a single rule among N. The rules are spread evenly over the behaviours, and each has its own
+response (`bench/growth.py`). The table shows the instructions from the reading to the end of the step and of everything that
+follows from it. This includes the kernel and the driver's command. The runtime is linked as in the firmware
+(`bench/firmware/step_bench.cpp`). Up to 40 rules are in 10 behaviours, more rules are in 64. The benchmark has more memory for
+programs than the board.
+
+Before the measurement, each channel has its first reading. The first step of a behaviour evaluates all of its rules, so these
+steps cost more, once: `path/first_step_…`.
 
 | rules | behaviours | instructions of the step |
 |---|---|---|"""
 
-WORKLOADS = """## Beside other virtual machines
+WORKLOADS = """## Comparison with other virtual machines
 
-The same three workloads, in instructions. W1: the paper's rule, from setting the reading to both commands put out. W2: one
-round of `s = s + i * i mod 251` over whole numbers. W3: one step of a mean of eight readings with hysteresis, shifted
-by hand. Their sources: `examples/touch_companion`, `bench/programs`. `vm/W3_natural` above is what W3 costs as users of
-RSL write it, a CHECK with SMOOTH and MARGIN: from the new reading to its band, in the runtime, a median and not a mean.
-Bytes: the code of W1, W2 and W3; ours have {constants} bytes of constants besides.
+The table compares the same three workloads, in instructions:
+
+* W1: the paper's rule, from setting the reading until both commands are issued.
+* W2: one round of `s = s + i * i mod 251` with whole numbers.
+* W3: one step of a mean of eight readings with hysteresis; the readings are shifted by hand.
+
+Their sources are in `examples/touch_companion` and `bench/programs`. `vm/W3_natural` above is the cost of W3 as users of RSL
+write it: a CHECK with SMOOTH and MARGIN. It runs from the new reading to its band, in the runtime, and uses a median, not a mean.
+The last column is the size of the code of W1, W2 and W3. RoboSync's programs also have {constants} bytes of constants.
 
 The peers were measured once, for the design of this VM, on their own sources and in the same way: arm-none-eabi-gcc
-12.2, -O2, hard float, QEMU 7.2 (`-M mps2-an386 -icount shift=0`), exactly where a plugin counted, to 40 instructions where
-SysTick did; W2 and W3 with whole numbers. `scripts/bench` does not measure them again (`bench/peers.json`).
+12.2, -O2, hard float, QEMU 7.2 (`-M mps2-an386 -icount shift=0`). The counts are exact where a plugin counted, and accurate to 40
+instructions where SysTick did. The peers' W2 and W3 use whole numbers. `scripts/bench` does not measure the peers again
+(`bench/peers.json`).
 
-| system | W1 | W2, a round | W3, a step | instructions an opcode, on W2 | bytes W1/W2/W3 |
+| system | W1 | W2, per round | W3, per step | instructions per opcode, on W2 | bytes W1/W2/W3 |
 |---|---|---|---|---|---|"""
 
 

@@ -92,7 +92,7 @@ bool runs_on(const Device& device, const Board& board) {
 }
 
 std::string boards_of(const Device& device) {
-  if (is_virtual(device)) return "all: it needs no hardware";
+  if (is_virtual(device)) return "all; it needs no hardware";
   std::vector<std::string> names;
   for (std::size_t i = 0; i < board_names().size(); ++i) {
     const Board board = board_at(i);
@@ -104,8 +104,9 @@ std::string boards_of(const Device& device) {
                     (parts.empty() ? "" : " (on the board: " + joined(parts) + ")"));
   }
   if (!names.empty()) return joined(names);
-  return device.has_driver ? "none yet: its commands take their time, and nothing is sent to it"
-                           : "none yet: with `\"type\": \"VIRTUAL\"` it is fed";
+  return device.has_driver
+             ? "none yet: its commands take their time, but nothing is sent to a device"
+             : "none yet: with `\"type\": \"VIRTUAL\"` you can feed it";
 }
 
 std::string unit_of(const Unit* unit) {
@@ -128,41 +129,42 @@ std::string wiring_keys(const Device& device) {
   REQUIRE(type != types.end());
   if (is_virtual(device)) return "";
   if (is_only_a_part(device))
-    return row({"`device`", "the name of the part; it is wired already", "needed"});
+    return row({"`device`", "the name of the part, which is already wired", "required"});
   std::string rows;
   if (vm::drives_channel(driver_of(device)))
     return row({"`address`",
                 fmt::format("{:#04x} to {:#04x}, and not {:#04x}", vm::kFirstChipAddress,
                             vm::kLastAddress, vm::kAllChipsAddress),
-                "needed"}) +
+                "required"}) +
            row({"`bus`", "a bus of the board", "0"}) +
-           row({"`channel`", "0 to " + std::to_string(vm::kChipChannels - 1), "needed"}) +
-           row({"`enable`", "the pin of the board at OE, the same for all servos of the chip",
-                "needed"});
+           row({"`channel`", "0 to " + std::to_string(vm::kChipChannels - 1), "required"}) +
+           row({"`enable`",
+                "the board's pin that is wired to OE, the same for all servos of the chip",
+                "required"});
   const bool screen = vm::drives_screen(driver_of(device));
   if (type->address)
     rows += row(
         {"`address`",
          fmt::format("{:#04x} to {:#04x}", screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
                      screen ? vm::kLastDisplayAddress : vm::kLastAddress),
-         "needed"});
+         "required"});
   if (vm::drives_player(driver_of(device)))
     return row({"`bus`", "a serial line of the board", "1"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
   if (vm::is_by_echo(driver_of(device)))
-    return row({"`trigger`", "an output of the board", "needed"}) +
-           row({"`echo`", "an input of the board", "needed"});
+    return row({"`trigger`", "an output of the board", "required"}) +
+           row({"`echo`", "an input of the board", "required"});
   if (vm::is_analog(driver_of(device)))
-    return row({"`pin`", "an analog input of the board", "needed"});
+    return row({"`pin`", "an analog input of the board", "required"});
   if (vm::drives_panel(driver_of(device)))
-    return row({"`pin`", "an output of the board that can be a panel's", "needed"});
+    return row({"`pin`", "an output of the board that can drive a panel", "required"});
   if (vm::has_two_pins(driver_of(device)))
-    rows += row({"`pins`", "two outputs of the board: forward, back", "needed"});
+    rows += row({"`pins`", "two outputs of the board: forward, backward", "required"});
   else if (type->pin)
-    rows += row(
-        {"`pin`", device.is_sensor ? "an input of the board" : "an output of the board", "needed"});
+    rows += row({"`pin`", device.is_sensor ? "an input of the board" : "an output of the board",
+                 "required"});
   if (device.is_sensor && device.type == "GPIO")
-    rows += row({"`active`", "`low`, `high`: the level that counts", "`low`"});
+    rows += row({"`active`", "`low`, `high`: the active level", "`low`"});
   if (device.type == "I2C" && device.has_registers())
     rows += row({"`register`", "0 to " + std::to_string(device.inputs - 1), "0"});
   return rows;
@@ -220,25 +222,25 @@ std::string actuator_keys(const Device& device) {
   std::string rows;
   if (actuator.to_unit != nullptr) {
     const std::string range = range_of(actuator.min, actuator.max, actuator.to_unit);
-    rows += row({"`range`", "of `TO`, inside " + range, range});
+    rows += row({"`range`", "of `TO`, within " + range, range});
   }
   if (actuator.at_unit != nullptr) {
     const std::string above = "above " + format_value(0, *actuator.at_unit);
-    rows += row({"`speeds`", "words for `AT`, " + above, "the words above"});
+    rows += row({"`speeds`", "words for `AT`, each " + above, "the words above"});
     const std::string of = vm::gives_power(actuator.driver) ? "`AT` and `TO`, " : "`AT`, ";
-    rows += row({"`limits`: `SPEED`", "the most of " + of + above, "none"});
+    rows += row({"`limits`: `SPEED`", "the maximum of " + of + above, "none"});
   }
   if (vm::drives_panel(actuator.driver)) {
     std::vector<std::string> colors;
     for (const std::string_view color : panel_colors())
       colors.push_back(code(color));
     rows += row({"`size`", "`5x5`, `8x8`", "`5x5`"});
-    rows += row({"`zigzag`", "true: each second row is wired from right to left", "false"});
+    rows += row({"`zigzag`", "true: every second row is wired from right to left", "false"});
     rows += row({"`color`", joined(colors), colors.front()});
     rows += row({"`brightness`", fmt::format("1 to {}, in percent", kMostPanelPercent),
                  std::to_string(kUsualPanelPercent)});
   }
-  if (device.has_sounds) rows += row({"`sounds`", "files, in the order of its tracks", "none"});
+  if (device.has_sounds) rows += row({"`sounds`", "files, in track order", "none"});
   const auto release = [](vm::Release how) {
     return code(kReleaseTexts[static_cast<std::size_t>(how)]);
   };
@@ -251,7 +253,7 @@ std::string section_of(const Device& device) {
   const std::string kind = device.is_sensor ? "sensor" : "actuator";
   std::string text = "| | |\n|---|---|\n";
   text += row({"kind", kind + ", `\"type\": \"" + device.type + "\"`" +
-                           (device.is_default ? "; what is meant without `device`" : "")});
+                           (device.is_default ? "; the default without `device`" : "")});
   text += row({"driver", device.has_driver ? code(driver.name) + ": " + std::string(driver.doc)
                                            : "none yet"});
   text += row({"boards", boards_of(device)});
@@ -259,15 +261,15 @@ std::string section_of(const Device& device) {
   std::string keys = wiring_keys(device);
   if (device.is_sensor)
     keys += row({"`channels`",
-                 "what is to be other than above: [keys of a channel](configuration.md#sensors)",
+                 "changes to the channels above: [keys of a channel](configuration.md#sensors)",
                  "the channels above"});
   else
     keys += actuator_keys(device);
-  return text + "\n| key | value | if it is not there |\n|---|---|---|\n" + keys;
+  return text + "\n| key | value | default |\n|---|---|---|\n" + keys;
 }
 
 std::string overview() {
-  std::string table = "| device | is | type | boards |\n|---|---|---|---|\n";
+  std::string table = "| device | description | type | boards |\n|---|---|---|---|\n";
   for (const DeviceText& text : device_texts()) {
     Diagnostics diagnostics;
     const Device device = read_device(text, diagnostics);
