@@ -9,7 +9,6 @@
 //  * All other higher-ranked sources can begin a step only until this one has begun its own.
 //  * As steps are not preempted, the first release need not be the worst: every release of the busy
 //    period is examined (Davis et al., Controller Area Network schedulability analysis, 2007).
-//    period is looked at (Davis et al., Controller Area Network schedulability analysis, 2007).
 #include "analysis/response_time.hpp"
 
 #include <algorithm>

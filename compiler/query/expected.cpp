@@ -17,7 +17,7 @@ constexpr int kMends = 6;
 constexpr std::size_t kMendingWork = 40'000;
 
 bool is_word(TokenKind kind) {
-  return kind == Kinds::NAME || kind >= Kinds::USE;
+  return kind == Kinds::NAME || is_keyword(kind);
 }
 
 // The tokens that the grammar would accept after these.
@@ -53,7 +53,7 @@ void add_going_on(const Tokens& piece, const SourceFile& source, std::uint32_t o
     open.pop_back();
   if (open.empty() || open.size() == piece.size()) return;
   for (const TokenKind kind : behind(open, source, offset)) {
-    const bool goes_on = kind >= Kinds::USE && (roles_of(kind) & role::after) != 0;
+    const bool goes_on = is_keyword(kind) && (roles_of(kind) & role::after) != 0;
     if (goes_on && !joins_conditions(kind) && !contains(kinds, kind)) kinds.push_back(kind);
   }
 }

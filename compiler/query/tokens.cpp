@@ -11,7 +11,7 @@ namespace {
 std::optional<ColouredToken::Sort> sort_of(TokenKind kind) {
   if (kind == Kinds::QUANTITY) return ColouredToken::Sort::number;
   if (kind == Kinds::STRING) return ColouredToken::Sort::text;
-  if (kind >= Kinds::USE) return ColouredToken::Sort::keyword;
+  if (is_keyword(kind)) return ColouredToken::Sort::keyword;
   return std::nullopt;
 }
 

@@ -401,6 +401,7 @@ struct Item {
 
 struct Tree {
   std::vector<Item> items;
+  std::vector<Span> keyword_names;  // names that are keywords elsewhere, in the order of the text
   std::forward_list<std::string> labels;  // those that differ from the source: `very   close`
 };
 

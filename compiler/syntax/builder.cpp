@@ -39,6 +39,7 @@ void Builder::restart(Diagnostics* diagnostics) {
   items_.clear();
   moved_out_.clear();
   expected_.clear();
+  keyword_names_.clear();
   too_deep_ = false;
 }
 

@@ -30,7 +30,11 @@ public:
   // The labels of everything it has built; the tree keeps them.
   std::forward_list<std::string> take_labels() { return std::move(labels_); }
 
+  // The keywords that it has read as names, in the order of the text.
+  std::vector<Span>& keyword_names() { return keyword_names_; }
+
   // ---- leaves
+  void keyword_is_name(Span span) { keyword_names_.push_back(span); }
   ast::Name name(Span span) const;
   ast::Name quoted(Span span) const;  // without its quotes
   // `word` is the place of USE in the text, which may hold another word that a repair replaced.
@@ -119,6 +123,7 @@ private:
   std::vector<ast::Item> items_;
   std::vector<ast::Item> moved_out_;  // out of a BEHAVIOR, which cannot hold them
   std::vector<TokenKind> expected_;
+  std::vector<Span> keyword_names_;
   std::forward_list<std::string> labels_;  // ast::Tree::labels
 };
 

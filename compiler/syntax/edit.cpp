@@ -86,7 +86,7 @@ int insertion_cost(TokenKind kind, const std::vector<TokenKind>& expected) {
   if (is_value(kind)) return cost::insert_value;
   if (kind == Kinds::PLUS) return cost::insert_operator;
   if (kind == Kinds::OPEN) return cost::insert_bracket;
-  if (kind < Kinds::USE) return cost::insert_sign;
+  if (!is_keyword(kind)) return cost::insert_sign;
   // A BEHAVIOR needs its PRIORITY; a rule hardly ever has one.
   if (kind == Kinds::PRIORITY && !contains(expected, Kinds::DO)) return cost::insert_frequent;
   return is_frequent(kind) ? cost::insert_frequent : cost::insert_rare;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
@@ -146,8 +147,8 @@ bool is_operator(Table table, const Tokens& tokens, std::size_t at, int depth) {
 
 class Formatter {
 public:
-  Formatter(const SourceMap& sources, FileId file)
-      : source_(sources.file(file)), all_(lex(source_, file, ignored_)) {
+  Formatter(const SourceMap& sources, FileId file, const ast::Tree& tree)
+      : source_(sources.file(file)), tree_(tree), all_(lex(source_, file, ignored_)) {
     seen_ = without_idle_ends(all_);
   }
 
@@ -258,7 +259,7 @@ private:
   }
 
   std::vector<std::string> cells_of(const Tokens& tokens, Table table) const {
-    std::vector<std::string> cells{std::string(text_of(tokens.front()))};
+    std::vector<std::string> cells{text_of(tokens.front())};
     int depth = 0;
     for (std::size_t i = 1; i < tokens.size(); ++i) {
       const Token& left = tokens[i - 1];
@@ -276,8 +277,15 @@ private:
     return cells;
   }
 
-  std::string_view text_of(const Token& token) const {
-    return token.kind == Kinds::ELSE_IF ? "ELSE IF" : source_.text(token.span);
+  // Where a name is expected, a keyword may be one: it stays as it is.
+  std::string text_of(const Token& token) const {
+    if (token.kind == Kinds::ELSE_IF) return "ELSE IF";
+    std::string text(source_.text(token.span));
+    const bool is_name = std::ranges::binary_search(tree_.keyword_names, token.span.begin, {},
+                                                    [](const Span& span) { return span.begin; });
+    if (is_keyword(token.kind) && !is_name)
+      std::ranges::transform(text, text.begin(), ascii::upper);
+    return text;
   }
 
   // Calls take(first, end) for each run of lines that belong together.
@@ -350,6 +358,7 @@ private:
 
   Diagnostics ignored_;
   const SourceFile& source_;
+  const ast::Tree& tree_;
   Tokens all_, seen_;
   std::size_t next_ = 0;  // in all_
   std::size_t at_ = 0;    // in seen_
@@ -364,7 +373,7 @@ std::vector<std::pair<TokenKind, std::string>> words_of(const SourceMap& sources
   Tokens all = lex(sources.file(file), file, ignored);
   std::vector<std::pair<TokenKind, std::string>> words;
   for (const Token& token : without_idle_ends(all)) {
-    const bool named = token.kind != Kinds::NEWLINE && token.kind != Kinds::ELSE_IF;
+    const bool named = token.kind != Kinds::NEWLINE && !is_keyword(token.kind);
     words.emplace_back(token.kind, named ? sources.text(token.span) : "");
   }
   return words;
@@ -372,8 +381,8 @@ std::vector<std::pair<TokenKind, std::string>> words_of(const SourceMap& sources
 
 }  // namespace
 
-std::optional<std::string> formatted(const SourceMap& sources, FileId file) {
-  Formatter formatter(sources, file);
+std::optional<std::string> formatted(const SourceMap& sources, FileId file, const ast::Tree& tree) {
+  Formatter formatter(sources, file, tree);
   if (!formatter.read()) return std::nullopt;
   std::string text = formatter.write();
   SourceMap after;

@@ -1,17 +1,21 @@
-// The one style of RSL: blocks are indented, words have one blank or none between them, rows of a table are aligned.
+// The one style of RSL: blocks are indented, words have one blank or none between them, rows of a table are aligned,
+// keywords are in capitals.
 //
-// Lines and words stay as they are: only the space between them changes, and repeated blank lines become one. The
-// program's meaning stays the same, which is checked.
+// Lines and names stay as they are: only the space between words and the case of keywords change, and repeated blank lines
+// become one. The program's meaning stays the same, which is checked.
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "compiler/source/source_file.hpp"
+#include "compiler/syntax/ast.hpp"
 
 namespace robosync::compiler {
 
-// The formatted text of a program in which parse() finds no mistake; nothing if formatting would change its words.
-[[nodiscard]] std::optional<std::string> formatted(const SourceMap& sources, FileId file);
+// The formatted text of a program in which parse() finds no mistake; nothing if formatting would change its words. `tree`
+// is what parse() returned.
+[[nodiscard]] std::optional<std::string> formatted(const SourceMap& sources, FileId file,
+                                                   const ast::Tree& tree);
 
 }  // namespace robosync::compiler

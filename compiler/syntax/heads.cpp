@@ -73,7 +73,7 @@ bool declares(TokenKind first, TokenKind behind) {
 
 // A word that cannot be a name, in lower case: RSL is mostly written in capitals.
 bool is_reserved_name(const Token& token, const SourceFile& source) {
-  if (token.kind < Kinds::USE || (roles_of(token.kind) & role::name) != 0) return false;
+  if (!is_keyword(token.kind) || (roles_of(token.kind) & role::name) != 0) return false;
   const std::string_view text = source.text(token.span);
   return std::ranges::none_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
 }

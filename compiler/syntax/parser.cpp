@@ -187,7 +187,8 @@ private:
       if (attempt.complete) {
         for (const Diagnostic& diagnostic : said.all())
           diagnostics_.add(diagnostic);
-        std::move(attempt.items.begin(), attempt.items.end(), std::back_inserter(program_.items));
+        std::ranges::move(attempt.items, std::back_inserter(program_.items));
+        std::ranges::move(attempt.keyword_names, std::back_inserter(program_.keyword_names));
         return true;
       }
       if (mistakes_ == most_mistakes || budget_.work == 0) return give_up(tokens);

@@ -32,6 +32,7 @@ Attempt Reader::read(Tokens& tokens, Diagnostics* diagnostics) {
   attempt.complete = grammar_.parse() == 0;
   if (attempt.complete) {
     attempt.items = std::move(builder_.items());
+    attempt.keyword_names = std::move(builder_.keyword_names());
     return attempt;
   }
   attempt.expected = builder_.expected();

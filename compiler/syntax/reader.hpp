@@ -15,7 +15,8 @@ namespace robosync::compiler {
 
 struct Attempt {
   bool complete = false;
-  std::vector<ast::Item> items;  // when complete
+  std::vector<ast::Item> items;     // when complete
+  std::vector<Span> keyword_names;  // when complete: those of Tree
   // If not complete: where the grammar stopped (an index into the tokens, or their number at the end),
   // the token it had taken before that one, and the tokens it would have accepted.
   std::size_t stopped_at = 0;

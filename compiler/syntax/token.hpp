@@ -21,6 +21,11 @@ inline bool is_one_of(TokenKind kind, std::initializer_list<TokenKind> kinds) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
+// The tokens of keywords follow all others.
+inline bool is_keyword(TokenKind kind) {
+  return kind >= Kinds::USE;
+}
+
 // Does it stand in front of an argument of a command?
 inline bool is_preposition(TokenKind kind) {
   return is_one_of(kind, {Kinds::TO, Kinds::BY, Kinds::OVER, Kinds::AT, Kinds::FOR, Kinds::MARGIN});

@@ -174,7 +174,7 @@ private:
     Diagnostic& message = diagnostics_.report(
         Code::E0008, what + " is missing" + (first ? " before " + found(edit_.at) : where));
     message.label(gap(), first ? "" : "here");
-    const bool word = kind >= Kinds::USE;
+    const bool word = is_keyword(kind);
     // Only likely: another word may be missing, or more than this one.
     if (word && !first) message.fix(gap(), " " + plain(kind), Applicability::likely);
     if (word && first) message.fix(gap(), plain(kind) + " ", Applicability::likely);
@@ -401,7 +401,7 @@ private:
   void something_else() {
     const TokenKind wanted = edit_.inserted.front().kind;
     const TokenKind kind = tokens_[edit_.at].kind;
-    if (wanted == Kinds::NAME && kind >= Kinds::USE) {
+    if (wanted == Kinds::NAME && is_keyword(kind)) {
       const bool value = edit_.at > 0 && (roles_of(kind) & role::name) != 0 &&
                          is_preposition(tokens_[edit_.at - 1].kind);
       diagnostics_
@@ -417,7 +417,7 @@ private:
     Diagnostic& message =
         diagnostics_.report(Code::E0001, found(edit_.at) + " does not fit here" + after(edit_.at));
     message.label(place(edit_.at), what_is_missing(wanted, {}) + " would fit");
-    if (wanted >= Kinds::USE) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
+    if (is_keyword(wanted)) message.fix(place(edit_.at), plain(wanted), Applicability::likely);
     show_line(message, edit_.at, failure_.expected);
   }
 

@@ -40,10 +40,10 @@ Json formatting(Desk desk, const Json& params) {
   SourceMap sources;
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add("", std::string(document->source.text()));
-  (void)compiler::parse(sources, file, diagnostics);
+  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
   // Errors are shown already.
   if (diagnostics.errors() > 0) return nullptr;
-  const auto result = compiler::formatted(sources, file);
+  const auto result = compiler::formatted(sources, file, tree);
   if (!result) throw Refusal("this text cannot be formatted without changing its meaning");
   if (*result == document->source.text()) return Json::array();
   return Json::array({difference(document->source, *result, desk.workspace.encoding())});

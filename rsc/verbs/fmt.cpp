@@ -32,14 +32,14 @@ std::optional<std::string> formatted(const std::string& name, const std::string&
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(name, text);
-  (void)compiler::parse(sources, file, diagnostics);
+  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
   diagnostics.finish();
   if (diagnostics.errors() > 0) {
     std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr())
               << fmt::format("{}: {}; it is unchanged\n", name, summary(diagnostics));
     return std::nullopt;
   }
-  std::optional<std::string> result = compiler::formatted(sources, file);
+  std::optional<std::string> result = compiler::formatted(sources, file, tree);
   if (!result)
     std::cerr << fmt::format("{}: cannot be formatted without changing it; it is unchanged\n",
                              name);

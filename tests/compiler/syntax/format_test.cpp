@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/compiler.hpp"
+#include "compiler/source/ascii.hpp"
 #include "compiler/syntax/lexer.hpp"
 #include "compiler/syntax/parser.hpp"
 #include "tests/support/golden.hpp"
@@ -30,8 +31,8 @@ std::string styled(const std::string& text) {
   SourceMap sources;
   Diagnostics diagnostics;
   const FileId file = sources.add("robot.rsl", text);
-  (void)parse(sources, file, diagnostics);
-  return diagnostics.errors() > 0 ? "" : formatted(sources, file).value_or("changed");
+  const ast::Tree tree = parse(sources, file, diagnostics);
+  return diagnostics.errors() > 0 ? "" : formatted(sources, file, tree).value_or("changed");
 }
 
 std::vector<fs::path> programs() {
@@ -41,6 +42,25 @@ std::vector<fs::path> programs() {
       if (entry.path().extension() == ".rsl") found.push_back(entry.path());
   std::ranges::sort(found);
   return found;
+}
+
+// The keywords of some lines in small letters; names that are keywords elsewhere stay.
+std::string recased(const std::string& text, std::mt19937& random) {
+  SourceMap sources;
+  Diagnostics ignored;
+  const FileId file = sources.add("robot.rsl", text);
+  const ast::Tree tree = parse(sources, file, ignored);
+  std::string made = text;
+  bool small = false;
+  for (const Token& token : lex(sources.file(file), file, ignored)) {
+    if (token.kind == Kinds::NEWLINE) small = random() % 2 == 0;
+    const bool is_name = std::ranges::any_of(
+        tree.keyword_names, [&token](const Span& name) { return name.begin == token.span.begin; });
+    if (!small || !is_keyword(token.kind) || is_name) continue;
+    for (std::size_t at = token.span.begin; at < token.span.end; ++at)
+      made[at] = ascii::lower(made[at]);
+  }
+  return made;
 }
 
 // The same words in the same lines, with other blanks between them, and blank lines where some were.
@@ -98,7 +118,7 @@ TEST_CASE("one space around what calculates, whatever stood there") {
     return all.substr(begin, all.find('\n', begin) - begin);
   };
   CHECK(line("TURN head TO (voice direction / 2)over 2seconds") ==
-        "TURN head TO (voice direction / 2) over 2seconds");
+        "TURN head TO (voice direction / 2) OVER 2seconds");
   CHECK(line("SET n TO 1-(2-3)") == "SET n TO 1 - (2 - 3)");
   CHECK(line("SET n TO (a -1)*n- 2") == "SET n TO (a - 1) * n - 2");
   CHECK(line("SET n TO (n)MOD(3)") == "SET n TO (n) MOD (3)");
@@ -121,6 +141,20 @@ TEST_CASE("the library and the examples are in the one style") {
   }
 }
 
+TEST_CASE("keywords are in capitals, names as they were written") {
+  CHECK(styled("when touch level<3 do move arms slowly else if a then b end") == "");
+  CHECK(styled("when touch level<3 do move arms slowly else stop arms end") ==
+        "WHEN touch level < 3 DO move arms slowly ELSE STOP arms END\n");
+  CHECK(styled("define nod\n  if a > 1 do wave else if a < 1 do bow end\nend") ==
+        "DEFINE nod\n  IF a > 1 DO wave ELSE IF a < 1 DO bow END\nEND\n");
+  // Keywords where only a name is possible: a variable, a channel, a word of a command, a label.
+  CHECK(styled("remember option = 1\nwhen touch motion > option do\n  set option to 4\n  move arms "
+               "from\nend") ==
+        "REMEMBER option = 1\nWHEN touch motion > option DO\n  SET option TO 4\n  move arms "
+        "from\nEND\n");
+  CHECK(styled("state lower: calm, stop") == "STATE lower: calm, stop\n");
+}
+
 TEST_CASE("however a program is spaced, it is formatted to the same") {
   std::mt19937 random(1);
   for (const fs::path& path : programs()) {
@@ -129,7 +163,7 @@ TEST_CASE("however a program is spaced, it is formatted to the same") {
     REQUIRE_FALSE(wanted.empty());
     CHECK(styled(wanted) == wanted);
     for (int i = 0; i < robosync::test::share_of(20); ++i) {
-      const std::string other = respaced(text, random);
+      const std::string other = respaced(recased(text, random), random);
       INFO(path << '\n' << other);
       REQUIRE(styled(other) == wanted);
     }

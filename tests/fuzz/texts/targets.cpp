@@ -13,6 +13,7 @@
 
 #include "compiler/compiler.hpp"
 #include "compiler/syntax/format.hpp"
+#include "compiler/syntax/parser.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/lsp/framing.hpp"
@@ -64,6 +65,13 @@ std::string scratch_file() {
       .string();
 }
 
+// The program's text, formatted.
+std::optional<std::string> formatted(const compiler::Result& result) {
+  compiler::Diagnostics ignored;
+  const compiler::ast::Tree tree = compiler::parse(result.sources, compiler::kProgramFile, ignored);
+  return compiler::formatted(result.sources, compiler::kProgramFile, tree);
+}
+
 }  // namespace
 
 // What is formatted means the same, and is not changed when it is formatted again.
@@ -71,13 +79,11 @@ void rsl(std::string_view input) {
   const compiler::Result result = compile(input, kRobot);
   check(result);
   if (result.diagnostics.errors() != 0) return;
-  const std::optional<std::string> text =
-      compiler::formatted(result.sources, compiler::kProgramFile);
+  const std::optional<std::string> text = formatted(result);
   if (!text) return;
   const compiler::Result again = compile(*text, kRobot);
   require(again.image == result.image, "what is formatted is another program");
-  require(compiler::formatted(again.sources, compiler::kProgramFile) == text,
-          "formatted twice is something else");
+  require(formatted(again) == text, "formatted twice is something else");
 }
 
 void robot(std::string_view input) {
