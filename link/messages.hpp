@@ -104,7 +104,7 @@ struct Activate {
   ProgramHash hash;        // as in Begin: another host may have sent another image meanwhile
   std::uint32_t trial_ms;  // length of the trial; 0: the default
   std::uint8_t goes_back;  // 1: back to the kept program after the trial, even if all went well
-  std::uint8_t fresh;      // 1: KEPT numbers start with the program's values, not the stored ones
+  std::uint8_t fresh;      // 1: all variables begin with the values written in the program
   std::array<std::uint8_t, 2> reserved{};
 };
 

@@ -2,11 +2,13 @@
 #include "runtime-m4/runtime.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <new>
 
 #include "runtime-m4/algorithms/judge.hpp"
 #include "runtime-m4/drivers/drivers.hpp"
+#include "runtime-m4/layers/carried.hpp"
 
 namespace robosync {
 
@@ -99,13 +101,30 @@ vm::Verdict Runtime::activate(std::span<const std::byte> bytes, bool named) {
   const vm::Verdict verdict = check(bytes);
   if (!verdict.ok()) return verdict;
   if (!named) return {vm::Refusal::wrong_name, vm::Section::header, 0};
-  end_program();
-  if (!load(bytes) || !start_program()) {
+  if (!change_to(bytes)) {
     clear();
     return {vm::Refusal::too_many, vm::Section::header, 0};
   }
   ++activations_;
   return {};
+}
+
+bool Runtime::change_to(std::span<const std::byte> bytes) {
+  layers::Carried carried;
+  if (carries_ && running_) take_values(carried);
+  end_program();
+  return load(bytes) && start_program(carried);
+}
+
+void Runtime::take_values(layers::Carried& carried) const {
+  const vm::Image& image = shared_.program.image;
+  std::array<vm::Value, policy::kMaxVariables> values;
+  {
+    const auto lock = kernel_.lock();
+    std::copy_n(shared_.processing.snapshot().values() + image.channels.size(),
+                image.variables.size(), values.begin());
+  }
+  carried.take(image, values);
 }
 
 // The image may be anywhere in the room, even where the new program's parts go, so it is moved first.
@@ -149,7 +168,7 @@ void Runtime::clear() {
 }
 
 // The threads wait until all of them have been added.
-bool Runtime::start_program() {
+bool Runtime::start_program(const layers::Carried& carried) {
   const layers::LoadedProgram& program = shared_.program;
   threads_.take_stacks(memory_);
   const auto safety = layers::SafetyRegion::take(memory_);
@@ -164,7 +183,7 @@ bool Runtime::start_program() {
   trace_.emit(EventKind::activated, {}, 0, 0, static_cast<std::int32_t>(seed));
   if (!control_.start(program, memory_, threads_) ||
       !shared_.behaviors.start(program, memory_, threads_) ||
-      !shared_.processing.start(program, kept_, memory_) ||
+      !shared_.processing.start(program, {kept_, carried}, memory_) ||
       !sensors_.start(program, *sampler_, simulated(), memory_, threads_) ||
       !algorithms_.start(program, memory_, threads_))
     return false;

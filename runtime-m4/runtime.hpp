@@ -95,8 +95,12 @@ public:
   const vm::Image& image() const { return shared_.program.image; }  // of the running program
   const vm::Limits& limits() const { return limits_; }
 
-  // The initial values of KEPT numbers, for each program that has them. Before activate(); the table must stay valid.
-  void begin_with(std::span<const layers::KeptNumber> kept) { kept_ = kept; }
+  // What the next programs begin with: their KEPT numbers with those in `kept`, a table that must stay valid; and with `carries`, the
+  // other variables with the values of the program that runs before (layers/carried.hpp). Before activate().
+  void begin_with(std::span<const layers::KeptNumber> kept, bool carries = false) {
+    kept_ = kept;
+    carries_ = carries;
+  }
   // The current values of the running program, all from the same step. Returns how many.
   std::size_t fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept) const;
 
@@ -137,7 +141,9 @@ private:
   [[gnu::noinline]] bool load(std::span<const std::byte> bytes);
   void end_program();
   void say(bool stopped);
-  [[gnu::noinline]] bool start_program();
+  [[gnu::noinline]] bool change_to(std::span<const std::byte> bytes);
+  [[gnu::noinline]] void take_values(layers::Carried& carried) const;
+  [[gnu::noinline]] bool start_program(const layers::Carried& carried);
   std::uint32_t choose_seed(std::uint32_t of_image) const;
   void go();
   bool simulated() const { return sampler_ != &drivers_; }
@@ -156,6 +162,7 @@ private:
   std::uint16_t activations_ = 0;
   std::uint32_t given_seed_ = 0;
   std::span<const layers::KeptNumber> kept_;
+  bool carries_ = false;
   unsigned faults_ = 0;  // of previous programs
   safety::Monitor monitor_;
   layers::Budget budget_;

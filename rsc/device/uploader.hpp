@@ -22,7 +22,7 @@ struct UploadOptions {
   std::optional<std::chrono::milliseconds> timeout;  // for the whole upload; else patience()
   std::function<void(std::size_t sent, std::size_t total)> progress;  // may be empty
   bool replace = false;                // end the running program first, to free its memory
-  bool fresh = false;                  // its KEPT numbers start as the program says
+  bool fresh = false;                  // its variables start as the program says
   std::chrono::milliseconds trial{0};  // how long it is on trial; 0: the board's default
   bool confirm = true;                 // false: after the trial the kept program comes back
   std::span<const std::byte> base;     // what probably runs there: only the difference is sent

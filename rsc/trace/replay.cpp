@@ -33,6 +33,11 @@ constexpr std::uint64_t kLongestUs = std::uint64_t{24} * 3600 * 1'000'000;
 // An event recorded later than replayed by more than this is a different event. One servo frame: no movement is shorter.
 constexpr std::uint64_t kMostLateUs = 20'000;
 
+// A variable begins with a value from before the program: a KEPT one, or one that an upload carried over.
+bool is_beginning(const Json& event) {
+  return event["event"] == "set" && event.value("step", Json(nullptr)) == 0;
+}
+
 // Excludes what is fed to the program and what only depends on the board.
 bool is_compared(std::string_view kind) {
   constexpr std::string_view kOthers[] = {"activated", "input",   "stale",  "fault",
@@ -49,9 +54,9 @@ std::uint64_t time_of(const Json& event) {
 }
 
 // The record at `index` of a section, in the bytes behind the image.
-template <typename Record>
+template <typename Record, typename How>
 void change(std::vector<std::byte>& bytes, std::span<const Record> section, std::size_t index,
-            void (*how)(Record&)) {
+            const How& how) {
   const auto* const at = reinterpret_cast<const std::byte*>(&section[index]);
   std::byte* const to = bytes.data() + (at - bytes.data());
   Record record;
@@ -65,7 +70,7 @@ std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes) {
   vm::Image image;
   if (!vm::view_image(bytes, image) || !vm::is_named(bytes, {})) return bytes;
   for (std::size_t i = 0; i < image.sensors.size(); ++i)
-    change<vm::Sensor>(bytes, image.sensors, i, [](vm::Sensor& sensor) {
+    change(bytes, image.sensors, i, [](vm::Sensor& sensor) {
       if (vm::is_served(sensor.driver)) return;
       sensor.driver = vm::DriverId::virtual_sensor;
       sensor.period_ms = 0;
@@ -82,10 +87,9 @@ std::vector<std::byte> with_plain_channels(const Program& program,
   vm::Image image;
   if (!vm::view_image(bytes, image)) return bytes;
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
-    change<vm::Channel>(bytes, image.channels, i, [](vm::Channel& channel) { channel.change = 0; });
+    change(bytes, image.channels, i, [](vm::Channel& channel) { channel.change = 0; });
     if (!silent.contains(static_cast<std::uint8_t>(i)))
-      change<vm::Channel>(bytes, image.channels, i,
-                          [](vm::Channel& channel) { channel.stale_ms = 0; });
+      change(bytes, image.channels, i, [](vm::Channel& channel) { channel.stale_ms = 0; });
   }
   vm::seal(bytes);
   return bytes;
@@ -98,6 +102,38 @@ vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& val
   const double thousandths = std::round(value.get<double>() * vm::kScale);
   if (std::abs(thousandths) > vm::kValueMax) throw std::invalid_argument("its value is too large");
   return static_cast<vm::Value>(thousandths);
+}
+
+// A variable's value as in the trace; nothing if it is not one of its values.
+std::optional<vm::Value> value_of(const vm::Image& image, const vm::Variable& variable,
+                                  const Json& value) {
+  if (value.is_number()) {
+    const double thousandths = std::round(value.get<double>() * vm::kScale);
+    return static_cast<vm::Value>(std::clamp<double>(thousandths, variable.min, variable.max));
+  }
+  for (unsigned label = 0; label < variable.label_count; ++label)
+    if (value == image.string(image.labels[variable.first_label + label]))
+      return static_cast<vm::Value>(label) * vm::kScale;
+  return std::nullopt;
+}
+
+// The program with the values that its variables began with in the recording. It may be another one, which lacks some.
+std::vector<std::byte> with_beginnings(std::vector<std::byte> bytes,
+                                       const RecordedProgram& recorded) {
+  vm::Image image;
+  if (!vm::view_image(bytes, image)) return bytes;
+  for (const auto& [line, event] : recorded.events) {
+    if (!is_beginning(event)) continue;
+    for (std::size_t i = 0; i < image.variables.size(); ++i) {
+      if (image.string(image.variables[i].name) != event.value("variable", "")) continue;
+      const auto value = value_of(image, image.variables[i], event.value("value", Json(nullptr)));
+      if (value)
+        change(bytes, image.variables, i,
+               [&value](vm::Variable& variable) { variable.initial = *value; });
+    }
+  }
+  vm::seal(bytes);
+  return bytes;
 }
 
 struct Told {
@@ -155,7 +191,7 @@ public:
   Feeder(sim::Simulator& simulator, const RecordedProgram& recorded, const vm::Image& image)
       : simulator_(simulator), image_(image), end_us_(time_of(recorded.events.back().event)) {
     for (const RecordedEvent& one : recorded.events)
-      if (is_of_step(kind_of(one.event)))
+      if (is_of_step(kind_of(one.event)) && !is_beginning(one.event))
         first_step_.try_emplace(time_of(one.event), step_of(one.event));
   }
 
@@ -295,7 +331,8 @@ Replayed compare(const std::vector<RecordedEvent>& recorded, const std::vector<J
                  Lines lines) {
   std::map<std::uint64_t, Millisecond> time;
   for (const RecordedEvent& one : recorded)
-    if (is_compared(kind_of(one.event))) time[time_of(one.event)].recorded.push_back(one);
+    if (is_compared(kind_of(one.event)) && !is_beginning(one.event))
+      time[time_of(one.event)].recorded.push_back(one);
   for (const Json& event : replayed)
     time[time_of(event)].replayed.push_back(event);
   Replayed result;
@@ -350,7 +387,8 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file,
     if (is_compared(kind_of(line))) replayed.push_back(std::move(line));
   };
   const std::set<std::uint8_t> silent = silent_ones(readings);
-  const std::vector<std::byte> bytes = with_plain_channels(program, silent);
+  const std::vector<std::byte> bytes =
+      with_beginnings(with_plain_channels(program, silent), recorded);
   sim::Simulator simulator(bytes, take, program.board(), seed_of(recorded));
   if (!simulator.verdict().ok())
     throw Failure(Exit::program, name + " does not run on this computer");

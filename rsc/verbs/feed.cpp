@@ -278,7 +278,7 @@ void add_feed(Options& options) {
                  "readings with their times: program time with --upload, else from now");
   options.option("--upload", "FILE", asked->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does");
-  options.flag("--fresh", asked->fresh, "with --upload: KEPT numbers start as the program says");
+  options.flag("--fresh", asked->fresh, "with --upload: variables start as the program says");
   add_compile_options(options, asked->how);
   add_duration_option(options, "--watch", asked->watch,
                       "show what happens until this long after the last reading is due");

@@ -82,7 +82,7 @@ void add_upload(Options& options) {
                "only try it: the kept program comes back after the trial");
   options.flag("--replace", asked->replace,
                "end the running program first, if the board has no room for both");
-  options.flag("--fresh", asked->fresh, "KEPT numbers start as the program says");
+  options.flag("--fresh", asked->fresh, "variables start as the program says");
   options.flag("--anyway", asked->anyway,
                "even if it is too much for the board, which may refuse it");
   options.flag("--take", asked->take, "take the line from a host that is uploading");

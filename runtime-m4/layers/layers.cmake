@@ -6,6 +6,7 @@ target_sources(robosync_runtime PRIVATE
   layers/arbiter.cpp
   layers/behavior.cpp
   layers/budget.cpp
+  layers/carried.cpp
   layers/checks.cpp
   layers/command_pool.cpp
   layers/control.cpp

@@ -30,14 +30,15 @@ bool starts_at_once(const LoadedProgram& program, const vm::Behavior& behavior) 
 
 }  // namespace
 
-bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNumber> kept,
+bool ProcessingLayer::start(const LoadedProgram& program, const Beginnings& beginnings,
                             Memory& memory) {
   program_ = &program;
   snapshot_.milliseconds_ = 0;
   snapshot_.values_ = memory.take<policy::Part::snapshot, vm::Value>();
   std::ranges::fill(snapshot_.values_, vm::kUnknown);
   layers_.variables.start(program.image, snapshot_.values_.subspan(program.image.channels.size()),
-                          kept, memory);
+                          beginnings, memory);
+  report_beginnings();
   checks_.start(program.image, memory);
   adaptation_.start(memory);
   concerned_.start(memory.take<policy::Part::concerned, RuleSet::Word>());
@@ -186,6 +187,13 @@ VariableMask ProcessingLayer::latch_variables(const Stamp& stamp) {
     report_set(band, stamp);
   }
   return changed;
+}
+
+// Step 0: these values are there before the first step. A replay needs them.
+void ProcessingLayer::report_beginnings() {
+  for (unsigned v = 0; v < program_->image.variables.size(); ++v)
+    if (snapshot_.values_[channels() + v] != program_->image.variables[v].initial)
+      report_set(v, {});
 }
 
 void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {

@@ -104,8 +104,8 @@ public:
       : kernel_(kernel), trace_(trace), thread_(thread), layers_(neighbours) {}
 
   // Starts the step thread of `program`, which must stay in place until it is dismissed.
-  [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program,
-                                      std::span<const KeptNumber> kept, Memory& memory);
+  [[nodiscard, gnu::cold]] bool start(const LoadedProgram& program, const Beginnings& beginnings,
+                                      Memory& memory);
   // All threads of the program exist: gives them their ranks.
   void rank() { adaptation_.rank(*program_, layers_.threads, trace_); }
   // … and starts the first step when the program's clock begins.
@@ -137,6 +137,7 @@ private:
   bool latch(Stamp& stamp, std::uint32_t now, bool anyway);
   void latch_channels(ChannelMask announced, ChannelMask expired, const Stamp& stamp);
   VariableMask latch_variables(const Stamp& stamp);
+  [[gnu::cold]] void report_beginnings();
   void report_set(unsigned variable, const Stamp& stamp);
   std::uint32_t next_due(std::uint32_t now) const;
   void add_waiting(unsigned rule, Soonest& due) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "runtime-m4/layers/carried.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "vm/arithmetic.hpp"
 
@@ -36,7 +37,7 @@ std::int64_t faded(std::int64_t distance, std::uint32_t fade, std::uint32_t tick
 }
 
 void Variables::start(const vm::Image& image, std::span<vm::Value> values,
-                      std::span<const KeptNumber> kept, Memory& memory) {
+                      const Beginnings& beginnings, Memory& memory) {
   image_ = &image;
   sums_ = memory.take<policy::Part::sums, vm::Value>();
   fades_ = memory.take_zero<policy::Part::fades, Fade>();
@@ -45,8 +46,10 @@ void Variables::start(const vm::Image& image, std::span<vm::Value> values,
   set_ = 0;
   fading_ = 0;
   unsigned fading = 0;
+  for (unsigned v = 0; v < image_->variables.size(); ++v)
+    values[v] = initial_of(image, image.variables[v], beginnings.kept);
+  beginnings.carried.apply(image, values);
   for (unsigned v = 0; v < image_->variables.size(); ++v) {
-    values[v] = initial_of(image, image.variables[v], kept);
     if (image_->variables[v].fade == 0) continue;
     fading_ |= bit<VariableMask>(v);
     fades_[fading++] = {.from = values[v], .since = 0};

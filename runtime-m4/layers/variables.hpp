@@ -39,8 +39,8 @@ public:
 
   explicit Variables(kernel::Kernel& kernel) : kernel_(kernel) {}
 
-  // Writes the initial values into `values`, one for each variable of `image`; KEPT ones begin with their value in `kept`.
-  void start(const vm::Image& image, std::span<vm::Value> values, std::span<const KeptNumber> kept,
+  // Writes the initial values into `values`, one for each variable of `image`.
+  void start(const vm::Image& image, std::span<vm::Value> values, const Beginnings& beginnings,
              Memory& memory);
 
   // Stages what a response of `behavior` has written; its frame was latched from `before`. In each step, call it from the most

@@ -55,7 +55,7 @@ void Keeper::host_activates(bool fresh) {
     if (!work()) kernel_.sleep_until(due_);
   numbers_.learn(runtime_);
   trips_count_ = runtime_.running() && !runtime_.has_tripped();
-  runtime_.begin_with(fresh ? std::span<const layers::KeptNumber>() : numbers_.all());
+  runtime_.begin_with(fresh ? std::span<const layers::KeptNumber>() : numbers_.all(), !fresh);
 }
 
 void Keeper::roll_back(const link::ProgramHash& hash) {

@@ -10,7 +10,13 @@ import stimuli
 
 FIRST_LEAD_MS = 8_000  # program time left to get the readings onto the board
 ATTEMPTS = 6  # a busy machine may read the trace too late; the recording says so, and the test tries again
-TICKING = "EVERY {} DO MOVE left_arm TO {}deg OVER 50ms END\n"
+COUNTING = """REMEMBER rounds = 0
+EVERY {} DO
+  RAISE rounds BY 1
+  MOVE left_arm TO {}deg OVER 50ms
+  LOG "round", rounds
+END
+"""
 
 
 class Replay(RobotTest):
@@ -59,13 +65,17 @@ class Replay(RobotTest):
     def test_a_robot_that_is_uploaded_to_in_the_middle(self):
         self.for_board(CONFIG)
         program, recording = self.folder / "robot.rsl", self.folder / "record.jsonl"
-        program.write_text(TICKING.format("5s", 10))
+        program.write_text(COUNTING.format("5s", 10))
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", program,
                             "--record", recording)
         self.assertTrue(reader.wait_for(lambda lines: sum('"to":10' in line for line in lines) > 3, 30))
-        program.write_text(TICKING.format("7s", 20))
+        program.write_text(COUNTING.format("7s", 20))
         self.assertTrue(reader.wait_for(lambda lines: sum('"to":20' in line for line in lines) > 3, 30))
         reader.stop()
+        begins = [event for event in map(json.loads, recording.read_text().splitlines())
+                  if event["event"] == "set" and event["step"] == 0]
+        self.assertEqual([event["variable"] for event in begins], ["rounds"])  # carried over by the second upload
+        self.assertGreater(begins[0]["value"], 3)
         programs = self.replayed(recording)
         self.assertEqual(len(programs), 2)
         self.assertTrue(all(one["commands"] > 1 for one in programs), programs)

@@ -183,6 +183,18 @@ TEST_CASE("numbers are forgotten when somebody says so, once") {
   CHECK(kept(robot) == Values{2});
 }
 
+TEST_CASE(
+    "a number that was not KEPT goes from one program to the next, too, unless somebody says "
+    "fresh") {
+  for (const bool fresh : {false, true}) {
+    Robot robot;
+    run_on(robot, counting("REMEMBER visits = 0\n"));
+    touch(robot, 4);
+    run_on(robot, counting(), fresh);
+    CHECK(kept(robot) == Values{fresh ? 0 : 4});
+  }
+}
+
 TEST_CASE("numbers of the last instant outlast a program that is ended before the next one comes") {
   Robot robot;
   tool::Client client(robot);
