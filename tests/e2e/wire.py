@@ -86,7 +86,8 @@ def unpack(name, payload):
 
 
 def activation(session, name):
-    return pack("Activate", session=session, hash=name, trial_ms=0, goes_back=0, fresh=0, reserved=bytes(2))
+    """Its variables begin as the program says: tests run one program after the other."""
+    return pack("Activate", session=session, hash=name, trial_ms=0, goes_back=0, fresh=1, reserved=bytes(2))
 
 
 def piece_head(session, offset):
