@@ -44,6 +44,7 @@ END
 def wheel_on(forward, back):
     """The robot.json for TURNS_ROUND, with the motor on these two pins."""
     return json.dumps({
+        "board": NAME,
         "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "wheel", "type": "PWM", "pins": [forward, back], "device": "motor"}]})
 
