@@ -5,7 +5,7 @@ import re
 
 import unimplemented
 from board import FIRMWARE, NAME, REFERENCE
-from support import PROFILE
+from support import PROFILE, pins_in
 
 import counting
 
@@ -28,7 +28,7 @@ SPACE, NEVER, SETTLED = "robosync::boards::microbit::pins::(anonymous namespace)
 
 def at_will():
     """The outputs on which a pulse may be as short and as long as a program wants it."""
-    return [pin for row in PROFILE["outputs"] if row["pulse_us"] == [0, FULL_US] for pin in range(row["pins"][0], row["pins"][1] + 1)]
+    return pins_in(row for row in PROFILE["outputs"] if row["pulse_us"] == [0, FULL_US])
 
 
 def arguments(folder):

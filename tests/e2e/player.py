@@ -3,13 +3,14 @@ the flash of the B-L475E-IOT01A."""
 
 import contextlib
 import sys
+import tempfile
 import threading
 from pathlib import Path
 
 from debugger import LINK_REGISTER, PC, Debugger
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
-from board import FIRMWARE  # noqa: E402
+from board import FIRMWARE, Board  # noqa: E402
 from counting import symbols  # noqa: E402
 
 FLASH = "robosync::boards::stm32l4::Flash::"
@@ -73,3 +74,24 @@ class FlashPlayer(Player):
     def end(self):
         self._thread.join()
         self._socket.close()
+
+
+class StoredBoard(Board):
+    """A board with a store. If QEMU does not have the part that works the store, `flash` plays it, and the debugger's port is taken."""
+
+    flash = None
+
+    def __init__(self, elf=FIRMWARE, extra=(), **others):
+        if not is_needed():
+            super().__init__(elf, extra=extra, **others)
+            return
+        with tempfile.TemporaryDirectory(prefix="robosync-gdb-") as folder:
+            gdb = Path(folder) / "gdb"
+            super().__init__(elf, extra=["-gdb", f"unix:{gdb},server=on,wait=off", "-S", *extra], **others)
+            self.flash = FlashPlayer(gdb)
+
+    def stop(self):
+        super().stop()
+        if self.flash:
+            self.flash.end()
+            self.flash = None

@@ -16,7 +16,8 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, NAME, Board, end_on_signals
+from board import FAST, NAME, end_on_signals
+from player import StoredBoard
 
 PATIENCE = 20  # seconds
 LONGEST = 0.6  # from the call of `rsc upload` to the cut: an upload takes 0.1 s to 0.3 s, and keeping the program as long again
@@ -57,7 +58,7 @@ class Robot:
         return self.running
 
     def switch_on(self):
-        self.board = Board(FIRMWARE, icount=FAST, store=self.folder / "store")
+        self.board = StoredBoard(icount=FAST, store=self.folder / "store")
 
     def switch_off(self):
         if self.board:

@@ -22,6 +22,14 @@ CONFIG = PROGRAMS / "robot.json"
 SEED = 20_250_711
 PROFILE = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text("utf-8"))
 
+
+def pins_in(rows):
+    """The pins in a list of the profile."""
+    return [pin for row in rows for pin in range(row["pins"][0], row["pins"][1] + 1)]
+
+
+INPUTS, OUTPUTS = pins_in(PROFILE["inputs"]), pins_in(PROFILE["outputs"])
+
 STOPS_WHEN_FAR = """
 SAFETY far
   WHEN near X > 90
@@ -61,8 +69,15 @@ class RobotTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+        self.switch_on()
+
+    def switch_on(self):
         self.board = Board(self.elf, icount=self.icount, extra=self.qemu_arguments(), before=self.before)
         self.addCleanup(self.board.stop)
+
+    def restart(self):
+        self.board.stop()
+        self.switch_on()
 
     def qemu_arguments(self):
         return []
@@ -98,12 +113,11 @@ class RobotTest(unittest.TestCase):
 
 def wired_as_it_can(actuators):
     """Moves an actuator whose pin is not an output of the board to the first free output."""
-    outputs = [pin for row in PROFILE["outputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
     wired = [actuator for actuator in actuators if "pin" in actuator]
     taken = [int(str(actuator["pin"]), 0) for actuator in wired]
-    free = [pin for pin in outputs if pin not in taken]
+    free = [pin for pin in OUTPUTS if pin not in taken]
     for actuator, pin in zip(wired, taken):
-        if pin not in outputs:
+        if pin not in OUTPUTS:
             actuator["pin"] = str(free.pop(0))
 
 
