@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, NAME, ROOT, Board
+from board import DEVICES, FAST, FIRMWARE, NAME, ROOT, Board
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "generators/programs"))
@@ -29,6 +29,8 @@ def pins_in(rows):
 
 
 INPUTS, OUTPUTS = pins_in(PROFILE["inputs"]), pins_in(PROFILE["outputs"])
+
+needs_i2c = unittest.skipUnless(NAME in DEVICES, "QEMU has no I2C of this board to which a device can be connected")
 
 STOPS_WHEN_FAR = """
 SAFETY far

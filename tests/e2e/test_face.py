@@ -7,7 +7,7 @@ import re
 import time
 import unittest
 
-from support import NAME, ROOT, STOPS_WHEN_FAR, LineReader  # also makes the imports below work
+from support import DEVICES, NAME, ROOT, STOPS_WHEN_FAR, LineReader, needs_i2c  # also makes the imports below work
 from traces import TraceTest
 
 import rsc
@@ -47,7 +47,8 @@ class Face(TraceTest):
     units = {"near.X": ""}
 
     def qemu_arguments(self):
-        return ["-device", f"ssd0303,id=oled,address={THERE:#x}", *super().qemu_arguments()]
+        display = ["-device", f"ssd0303,id=oled,address={THERE:#x}"] if NAME in DEVICES else []
+        return [*display, *super().qemu_arguments()]
 
     def written(self, text, address=THERE):
         near = {"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}
@@ -78,6 +79,7 @@ class Face(TraceTest):
         program, config = self.written(text, address)
         return self.say("upload", program, "--config", config)
 
+    @needs_i2c
     def test_each_picture_is_on_it_until_the_robot_is_stopped(self):
         done = self.begin(PROGRAM)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -92,6 +94,7 @@ class Face(TraceTest):
         self.await_shown("neutral")
         self.assertEqual(self.status()["faults"], 0)
 
+    @needs_i2c
     def test_the_next_program_begins_in_the_dark(self):
         self.begin("AT START DO SHOW face heart END\n")
         self.await_shown("heart")
