@@ -2,12 +2,14 @@
 modules of the other boards' chips, and logs what the firmware writes to them."""
 
 import re
+import sys
+from pathlib import Path
 
 import unimplemented
 from board import FIRMWARE, NAME, REFERENCE
-from support import PROFILE, pins_in
 
-import counting
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
+from counting import symbols  # noqa: E402
 
 PINS = 36  # words of the reference board
 FULL_US = 20_000
@@ -26,11 +28,6 @@ MODULES, ON, PIN_OF_CHANNEL = (0x1_C000, 0x2_1000), 0x500, 0x560
 SPACE, NEVER, SETTLED = "robosync::boards::microbit::pins::(anonymous namespace)::", 0x7FFF, 3
 
 
-def at_will():
-    """The outputs on which a pulse may be as short and as long as a program wants it."""
-    return pins_in(row for row in PROFILE["outputs"] if row["pulse_us"] == [0, FULL_US])
-
-
 def arguments(folder):
     """QEMU's options for a board whose outputs are examined."""
     return [] if NAME == REFERENCE else unimplemented.arguments(folder)
@@ -44,7 +41,7 @@ class Outputs:
         self._log = unimplemented.log_in(folder)
         self._read_to = 0
         self._written = {}  # the last value in each register
-        self._symbols = counting.symbols(FIRMWARE)
+        self._symbols = symbols(FIRMWARE)
 
     def pulses(self):
         """{pin: its pulse in us}, without the pins that are off."""

@@ -28,7 +28,9 @@ def pins_in(rows):
     return [pin for row in rows for pin in range(row["pins"][0], row["pins"][1] + 1)]
 
 
-INPUTS, OUTPUTS = pins_in(PROFILE["inputs"]), pins_in(PROFILE["outputs"])
+INPUTS, OUTPUTS, ENABLES = pins_in(PROFILE["inputs"]), pins_in(PROFILE["outputs"]), pins_in(PROFILE.get("enables", []))
+# The outputs on which a pulse may be as short and as long as a program wants it.
+AT_WILL = pins_in(row for row in PROFILE["outputs"] if row["pulse_us"] == [0, 20_000])
 
 needs_i2c = unittest.skipUnless(NAME in DEVICES, "QEMU has no I2C of this board to which a device can be connected")
 
@@ -114,13 +116,37 @@ class RobotTest(unittest.TestCase):
 
 
 def wired_as_it_can(actuators):
-    """Moves an actuator whose pin is not an output of the board to the first free output."""
-    wired = [actuator for actuator in actuators if "pin" in actuator]
-    taken = [int(str(actuator["pin"]), 0) for actuator in wired]
+    """Moves actuators from pins that the board does not have for them to free ones. Those for which there are none become virtual."""
+    taken = {int(str(pin), 0) for actuator in actuators for pin in pins_of(actuator)}
     free = [pin for pin in OUTPUTS if pin not in taken]
-    for actuator, pin in zip(wired, taken):
-        if pin not in OUTPUTS:
-            actuator["pin"] = str(free.pop(0))
+    enables = {}
+    for actuator in actuators:
+        allowed = AT_WILL if actuator.get("device") in ("motor", "pwm") else OUTPUTS
+        pins = pins_of(actuator)
+        found = [pin for pin in free if pin in allowed][:len(pins)]
+        if "enable" in actuator:
+            at = enables.setdefault(actuator["enable"], len(enables))
+            if at >= len(ENABLES):
+                become_virtual(actuator)
+            else:
+                actuator["enable"] = ENABLES[at]
+        elif all(int(str(pin), 0) in allowed for pin in pins):
+            continue
+        elif len(found) < len(pins):
+            become_virtual(actuator)
+        else:
+            free = [pin for pin in free if pin not in found]
+            actuator.update({"pin": str(found[0])} if "pin" in actuator else {"pins": found})
+
+
+def pins_of(actuator):
+    return [actuator["pin"]] if "pin" in actuator else actuator.get("pins", [])
+
+
+def become_virtual(actuator):
+    for wiring in ("pin", "pins", "bus", "address", "channel", "enable"):
+        actuator.pop(wiring, None)
+    actuator["type"] = "VIRTUAL"
 
 
 def host_trace(image, scenario, until_ms):

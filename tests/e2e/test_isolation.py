@@ -13,7 +13,7 @@ import rsc
 import touched
 from board import FIRMWARE, NAME
 from debugger import INTERPRETER, PC, DebuggedTest, endless_loop
-from support import LineReader
+from support import AT_WILL, LineReader
 from touched import LINE, TAME, WATCHDOG, WILD
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -24,7 +24,7 @@ NMI_NEEDS = 192  # bytes: a frame with FPU registers, and the functions that it 
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
 OVERRUN = 1 << 22  # port/cortex-m4/fault.hpp
 AT_REST, AT_60_DEGREES = 500, 1500  # us
-LEFT, RIGHT = outputs.at_will()[:2]
+LEFT, RIGHT = AT_WILL[:2]
 ACTUATORS = [
     {"name": "left_arm", "type": "PWM", "pin": LEFT, "device": "servo", "range": ["0deg", "120deg"], "on_release": "rest"},
     {"name": "right_arm", "type": "PWM", "pin": RIGHT, "device": "servo", "range": ["0deg", "120deg"]}]

@@ -9,10 +9,10 @@ import outputs
 import rsc
 import wire
 from board import NAME
-from support import PROFILE, TURNS_ROUND, RobotTest, wheel_on
+from support import AT_WILL, PROFILE, TURNS_ROUND, RobotTest, wheel_on
 
 PATIENCE = 20
-ARM, MOTOR, FORWARD, BACK = outputs.at_will()[:4]
+ARM, MOTOR, FORWARD, BACK = AT_WILL[:4]
 SEVENTY_PERCENT = 14_000  # us
 PWM_DRIVER, LIGHTS_DRIVER = 5, 9  # in vm/drivers.def
 CONFIG = {
