@@ -30,7 +30,7 @@ class FirstBoard(unittest.TestCase):
         # The emulator's second is longer while this machine is busy.
         expected = ["its second", *(f"`{name} " for name in SILENT)]
         self.assertTrue(all(any(what in row for what in expected) for row in wrong), done.stdout)
-        self.assertEqual(done.returncode, len(wrong))
+        self.assertEqual(done.returncode, int(bool(wrong)))
 
     def test_another_board_is_not_what_it_should_be(self):
         with Board(icount=REAL_TIME) as board:
