@@ -2,7 +2,6 @@
 the test plays others. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
 
 import json
-import random
 import re
 import struct
 import subprocess
@@ -81,20 +80,7 @@ COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
 
 
 class KeptInFlash(test_store.Switched):
-    """What the erased pages show, and cuts of the power at instants of the board's own time."""
-
-    def test_power_that_goes_at_any_time_leaves_a_kept_program(self):
-        images = self.images()
-        known = {self.keep(image) for image in images}
-        draw = random.Random(1)
-        for round_ in range(4):
-            with self.subTest(round=round_):
-                self.upload(images[round_ % 2])
-                time.sleep(draw.random() * 0.2)  # some seconds of the board's time
-                self.board.cut_power()
-                self.switch_on()
-                self.await_kept("kept")
-                self.assertIn(self.running(), known)
+    """What the erased pages show."""
 
     def test_it_starts_with_the_program_that_stood_its_trial(self):
         first, second = self.images()

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FAST, NAME, end_on_signals
+from board import FAST, NAME, REFERENCE, end_on_signals
 from player import StoredBoard
 
 PATIENCE = 20  # seconds
@@ -72,12 +72,21 @@ class Robot:
         """Waits until it runs a program and no trial is in progress; `running` is that program then."""
         give_up = time.monotonic() + PATIENCE
         while True:
-            said = rsc.info(self.board.port)
+            said = self.info(give_up)
             if said["kept"]["state"] == "kept" and said["board"]["program"]:  # it may have started with it between the two questions
                 self.running = said["board"]["program"]["hash"]
                 return
             if time.monotonic() > give_up:
                 raise Broken(f"after {PATIENCE} s it still says {said['kept']}")
+
+    def info(self, give_up):
+        """Tries several times where the board may be slower than rsc waits: its flash is played, or its emulator is slow."""
+        while True:
+            try:
+                return rsc.info(self.board.port)
+            except rsc.RscError:
+                if NAME == REFERENCE or time.monotonic() > give_up:
+                    raise
 
 
 def cut(robot):

@@ -14,6 +14,7 @@ import rsc
 from stimuli import Reading
 
 PATIENCE = 20
+SAYS_NOTHING = {"b-l475e-iot01a", "nucleo-l476rg"}
 PICTURES = dict(re.findall(r'^PICTURE\((\w+),\s*"(.*)"\)$', (ROOT / "runtime-m4/drivers/pictures.def").read_text(), re.M))
 PICTURES = {name: rows.split('", "') for name, rows in PICTURES.items()}
 ALIKE = {"happy", "sad"}  # their upper quarter equals that of `neutral`
@@ -101,6 +102,7 @@ class Face(TraceTest):
         self.begin(PROGRAM)
         self.await_shown("dark")
 
+    @unittest.skipIf(NAME in SAYS_NOTHING, "QEMU has no I2C master of this board: a write to it never ends, and counts as done")
     def test_one_that_is_not_there_is_told_and_the_program_goes_on_without_it(self):
         program, config = self.written(GOES_ON, NOBODY)
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", program, "--config", config)
