@@ -10,7 +10,7 @@ from pathlib import Path
 from debugger import LINK_REGISTER, PC, Debugger
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
-from board import FIRMWARE, Board  # noqa: E402
+from board import FIRMWARE, Board, Qmp  # noqa: E402
 from counting import symbols  # noqa: E402
 
 FLASH = "robosync::boards::stm32l4::Flash::"
@@ -76,6 +76,24 @@ class FlashPlayer(Player):
         self._socket.close()
 
 
+class QmpOnDemand:
+    """QEMU's control socket, connected for one command at a time. Each stop of the debugger is an event, and QEMU loses parts of
+    events that nobody reads."""
+
+    def __init__(self, path):
+        self._path = path
+
+    def command(self, name, **arguments):
+        qmp = Qmp(self._path)
+        try:
+            return qmp.command(name, **arguments)
+        finally:
+            qmp.close()
+
+    def close(self):
+        pass
+
+
 class StoredBoard(Board):
     """A board with a store. If QEMU does not have the part that works the store, `flash` plays it, and the debugger's port is taken."""
 
@@ -88,6 +106,8 @@ class StoredBoard(Board):
         with tempfile.TemporaryDirectory(prefix="robosync-gdb-") as folder:
             gdb = Path(folder) / "gdb"
             super().__init__(elf, extra=["-gdb", f"unix:{gdb},server=on,wait=off", "-S", *extra], **others)
+            self.qmp.close()
+            self.qmp = QmpOnDemand(self.qmp_path)
             self.flash = FlashPlayer(gdb)
 
     def stop(self):
