@@ -5,6 +5,7 @@ import contextlib
 import sys
 import tempfile
 import threading
+import time
 from pathlib import Path
 
 from debugger import LINK_REGISTER, PC, Debugger
@@ -16,6 +17,7 @@ from counting import symbols  # noqa: E402
 FLASH = "robosync::boards::stm32l4::Flash::"
 PAGE, AT_ONCE = 2048, 1024  # bytes of a page of the flash; bytes that the debugger writes in one request
 DONE = 1  # boards::Erasing
+RESET_SECONDS = 0.2
 
 
 def is_needed():
@@ -29,6 +31,7 @@ class Player(Debugger):
     def __init__(self, path):
         super().__init__(path)
         self._plays = {}
+        self.playing = threading.Lock()
 
     def play(self, place, function):
         """From now on, calls `function` instead of the one at that address; its argument is the core's registers."""
@@ -39,9 +42,11 @@ class Player(Debugger):
         """Returns the address of the function that was played, None if the board was switched off."""
         if not self.go_on():
             return None
-        core = self.core()
-        self._plays[core[PC]](core)
-        self.set_register(PC, core[LINK_REGISTER] & ~1)
+        with self.playing:
+            core = self.core()
+            if core[PC] in self._plays:  # otherwise the board was reset
+                self._plays[core[PC]](core)
+                self.set_register(PC, core[LINK_REGISTER] & ~1)
         return core[PC]
 
 
@@ -109,6 +114,15 @@ class StoredBoard(Board):
             self.qmp.close()
             self.qmp = QmpOnDemand(self.qmp_path)
             self.flash = FlashPlayer(gdb)
+
+    def reset(self):
+        """Not while a function is played: the board would go on after it, instead of starting."""
+        if not self.flash:
+            self.qmp.command("system_reset")
+            return
+        with self.flash.playing:
+            self.qmp.command("system_reset")
+            time.sleep(RESET_SECONDS)  # QEMU does it after its answer
 
     def stop(self):
         super().stop()

@@ -94,7 +94,7 @@ def cut(robot):
 
 
 def reset(robot):
-    robot.board.qmp.command("system_reset")
+    robot.board.reset()
 
 
 def one(robot, draw):

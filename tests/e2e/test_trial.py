@@ -43,7 +43,7 @@ class Trial(Switched):
         first, second = self.images()
         self.assertIsNone(self.running())
         kept = self.keep(first)
-        for switched in (self.power_cycle, lambda: self.board.qmp.command("system_reset")):
+        for switched in (self.power_cycle, lambda: self.board.reset()):
             switched()
             self.await_kept("kept")
             status = self.status()
