@@ -32,6 +32,7 @@ DEVICES = {REFERENCE: ["-device", "max34451,id=touch,address=0x70"]}
 # QEMU cannot back the flash by a file: this loads it at the start, and saves it at the end.
 EEPROMS = {REFERENCE: "at24c-eeprom,address=0x50,rom-size={size},drive=store"}
 FLASHES = {"microbit-v2": 0x8_0000 - 221_184, "b-l475e-iot01a": 0x0808_0000, "nucleo-l476rg": 0x0808_0000}
+KEEPS_BY_ITSELF = {"microbit-v2"}  # in QEMU it has its store without a file, too: that one is blank at the start
 BLANK = b"\xff"
 HAVE_WATCHDOG = {REFERENCE}  # in QEMU
 SINCE = {"b-l475e-iot01a": (9, 2), "nucleo-l476rg": (9, 2), "microbit-v2": (9, 2)}

@@ -1,9 +1,7 @@
 """Tests how the shipped firmware of the B-L475E-IOT01A uses the parts of its chip that QEMU does not have: some stay silent, and
 the test plays others. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
 
-import contextlib
 import json
-import random
 import re
 import struct
 import subprocess
@@ -15,18 +13,16 @@ from pathlib import Path
 import panel
 import pins
 import rsc
-import test_owner
 import test_store
 import unimplemented
 from debugger import LINK_REGISTER, PC, DebuggedTest
-from player import FLASH, FlashPlayer
+from player import FLASH
 from support import PROGRAMS, LineReader, RobotTest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, REAL_TIME, ROOT  # noqa: E402
 from counting import symbols  # noqa: E402
 
-UPLOADS = 3
 PATIENCE = 20
 # Registers of the I2C masters and of DMA1.
 TRANSFER, COUNT_4, MEMORY_4, COUNT_5, MEMORY_5 = ("I2C2", 0x04), ("DMA1", 0x48), ("DMA1", 0x50), ("DMA1", 0x5C), ("DMA1", 0x64)
@@ -83,64 +79,20 @@ TELL = "robosync::guard::OutputGuard::tell("
 COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
 
 
-class WithFlash:
-    """A board that can be switched off and on, and its flash."""
-
-    def switch_on(self, *extra):
-        self.end_flash()
-        self.starts = getattr(self, "starts", 0) + 1
-        gdb = self.folder / f"gdb{self.starts}"
-        super().switch_on("-gdb", f"unix:{gdb},server=on,wait=off", "-S", *extra)
-        self.flash = FlashPlayer(gdb)
-        self.addCleanup(self.end_flash)
-
-    def upload(self, program, *arguments):
-        """Tries several times: the debugger delays the board, on a busy machine for longer than rsc waits."""
-        for _ in range(UPLOADS - 1):
-            with contextlib.suppress(rsc.RscError):
-                return super().upload(program, *arguments)
-        return super().upload(program, *arguments)
-
-    def end_flash(self):
-        if getattr(self, "flash", None):
-            self.board.stop()
-            self.flash.end()
-            self.flash = None
-
-
-class KeptInFlash(WithFlash, test_store.Numbers):
-    """Numbers and programs are kept, as on the reference board."""
-
-    test_back_and_forth = test_store.Store.test_back_and_forth
-
-    def test_power_that_goes_at_any_time_leaves_a_kept_program(self):
-        images = self.images()
-        known = {self.keep(image) for image in images}
-        draw = random.Random(1)
-        for round_ in range(4):
-            with self.subTest(round=round_):
-                self.upload(images[round_ % 2])
-                time.sleep(draw.random() * 0.2)  # some seconds of the board's time
-                self.board.cut_power()
-                self.switch_on()
-                self.await_kept("kept")
-                self.assertIn(self.running(), known)
+class KeptInFlash(test_store.Switched):
+    """What the erased pages show."""
 
     def test_it_starts_with_the_program_that_stood_its_trial(self):
         first, second = self.images()
         kept = self.keep(first)
-        self.assertGreaterEqual(self.flash.erased, 2)  # one for it, one for the record
+        self.assertGreaterEqual(self.board.flash.erased, 2)  # one for it, one for the record
         self.power_cycle()
         self.await_kept("kept")
         self.assertEqual(self.running(), kept)
-        self.assertEqual(self.flash.erased, 0)
+        self.assertEqual(self.board.flash.erased, 0)
         self.upload(second)
         self.assertNotEqual(self.running(), kept)
         self.assertEqual(self.keep(second), self.running())
-
-
-class OwnerInFlash(WithFlash, test_owner.Owner):
-    pass
 
 
 class Bus(DebuggedTest):

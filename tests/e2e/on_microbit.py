@@ -135,8 +135,8 @@ PROGRAMS = "robosync::boards::microbit::Flash::program("
 RUNS_IN_RAM = 0x2000_0000
 
 
-class KeptInFlash(test_store.Numbers):
-    """Numbers are kept, as on the reference board; so are programs if the power is cut at a part of an erase, or at a word."""
+class KeptInFlash(test_store.Switched):
+    """Programs are kept if the power is cut at a part of an erase, or at a word."""
 
     def cut(self, image, place, times):
         """Cuts the power while the image is written, when the firmware reaches the place for the `times`-th time."""

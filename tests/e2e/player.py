@@ -3,18 +3,21 @@ the flash of the B-L475E-IOT01A."""
 
 import contextlib
 import sys
+import tempfile
 import threading
+import time
 from pathlib import Path
 
 from debugger import LINK_REGISTER, PC, Debugger
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
-from board import FIRMWARE  # noqa: E402
+from board import FIRMWARE, Board, Qmp  # noqa: E402
 from counting import symbols  # noqa: E402
 
 FLASH = "robosync::boards::stm32l4::Flash::"
 PAGE, AT_ONCE = 2048, 1024  # bytes of a page of the flash; bytes that the debugger writes in one request
 DONE = 1  # boards::Erasing
+RESET_SECONDS = 0.2
 
 
 def is_needed():
@@ -28,6 +31,7 @@ class Player(Debugger):
     def __init__(self, path):
         super().__init__(path)
         self._plays = {}
+        self.playing = threading.Lock()
 
     def play(self, place, function):
         """From now on, calls `function` instead of the one at that address; its argument is the core's registers."""
@@ -38,9 +42,11 @@ class Player(Debugger):
         """Returns the address of the function that was played, None if the board was switched off."""
         if not self.go_on():
             return None
-        core = self.core()
-        self._plays[core[PC]](core)
-        self.set_register(PC, core[LINK_REGISTER] & ~1)
+        with self.playing:
+            core = self.core()
+            if core[PC] in self._plays:  # otherwise the board was reset
+                self._plays[core[PC]](core)
+                self.set_register(PC, core[LINK_REGISTER] & ~1)
         return core[PC]
 
 
@@ -73,3 +79,53 @@ class FlashPlayer(Player):
     def end(self):
         self._thread.join()
         self._socket.close()
+
+
+class QmpOnDemand:
+    """QEMU's control socket, connected for one command at a time. Each stop of the debugger is an event, and QEMU loses parts of
+    events that nobody reads."""
+
+    def __init__(self, path):
+        self._path = path
+
+    def command(self, name, **arguments):
+        qmp = Qmp(self._path)
+        try:
+            return qmp.command(name, **arguments)
+        finally:
+            qmp.close()
+
+    def close(self):
+        pass
+
+
+class StoredBoard(Board):
+    """A board with a store. If QEMU does not have the part that works the store, `flash` plays it, and the debugger's port is taken."""
+
+    flash = None
+
+    def __init__(self, elf=FIRMWARE, extra=(), **others):
+        if not is_needed():
+            super().__init__(elf, extra=extra, **others)
+            return
+        with tempfile.TemporaryDirectory(prefix="robosync-gdb-") as folder:
+            gdb = Path(folder) / "gdb"
+            super().__init__(elf, extra=["-gdb", f"unix:{gdb},server=on,wait=off", "-S", *extra], **others)
+            self.qmp.close()
+            self.qmp = QmpOnDemand(self.qmp_path)
+            self.flash = FlashPlayer(gdb)
+
+    def reset(self):
+        """Not while a function is played: the board would go on after it, instead of starting."""
+        if not self.flash:
+            self.qmp.command("system_reset")
+            return
+        with self.flash.playing:
+            self.qmp.command("system_reset")
+            time.sleep(RESET_SECONDS)  # QEMU does it after its answer
+
+    def stop(self):
+        super().stop()
+        if self.flash:
+            self.flash.end()
+            self.flash = None

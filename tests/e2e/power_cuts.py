@@ -16,7 +16,8 @@ import time
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, NAME, Board, end_on_signals
+from board import FAST, NAME, REFERENCE, end_on_signals
+from player import StoredBoard
 
 PATIENCE = 20  # seconds
 LONGEST = 0.6  # from the call of `rsc upload` to the cut: an upload takes 0.1 s to 0.3 s, and keeping the program as long again
@@ -57,7 +58,7 @@ class Robot:
         return self.running
 
     def switch_on(self):
-        self.board = Board(FIRMWARE, icount=FAST, store=self.folder / "store")
+        self.board = StoredBoard(icount=FAST, store=self.folder / "store")
 
     def switch_off(self):
         if self.board:
@@ -71,12 +72,21 @@ class Robot:
         """Waits until it runs a program and no trial is in progress; `running` is that program then."""
         give_up = time.monotonic() + PATIENCE
         while True:
-            said = rsc.info(self.board.port)
+            said = self.info(give_up)
             if said["kept"]["state"] == "kept" and said["board"]["program"]:  # it may have started with it between the two questions
                 self.running = said["board"]["program"]["hash"]
                 return
             if time.monotonic() > give_up:
                 raise Broken(f"after {PATIENCE} s it still says {said['kept']}")
+
+    def info(self, give_up):
+        """Tries several times where the board may be slower than rsc waits: its flash is played, or its emulator is slow."""
+        while True:
+            try:
+                return rsc.info(self.board.port)
+            except rsc.RscError:
+                if NAME == REFERENCE or time.monotonic() > give_up:
+                    raise
 
 
 def cut(robot):
@@ -84,7 +94,7 @@ def cut(robot):
 
 
 def reset(robot):
-    robot.board.qmp.command("system_reset")
+    robot.board.reset()
 
 
 def one(robot, draw):

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import rsc
-from board import FAST, FIRMWARE, NAME, ROOT, Board
+from board import DEVICES, FAST, FIRMWARE, NAME, ROOT, Board
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "generators/programs"))
@@ -21,6 +21,18 @@ PROGRAMS = HERE / "programs"
 CONFIG = PROGRAMS / "robot.json"
 SEED = 20_250_711
 PROFILE = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text("utf-8"))
+
+
+def pins_in(rows):
+    """The pins in a list of the profile."""
+    return [pin for row in rows for pin in range(row["pins"][0], row["pins"][1] + 1)]
+
+
+INPUTS, OUTPUTS, ENABLES = pins_in(PROFILE["inputs"]), pins_in(PROFILE["outputs"]), pins_in(PROFILE.get("enables", []))
+# The outputs on which a pulse may be as short and as long as a program wants it.
+AT_WILL = pins_in(row for row in PROFILE["outputs"] if row["pulse_us"] == [0, 20_000])
+
+needs_i2c = unittest.skipUnless(NAME in DEVICES, "QEMU has no I2C of this board to which a device can be connected")
 
 STOPS_WHEN_FAR = """
 SAFETY far
@@ -44,6 +56,7 @@ END
 def wheel_on(forward, back):
     """The robot.json for TURNS_ROUND, with the motor on these two pins."""
     return json.dumps({
+        "board": NAME,
         "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "wheel", "type": "PWM", "pins": [forward, back], "device": "motor"}]})
 
@@ -60,8 +73,15 @@ class RobotTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="robosync-e2e-")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+        self.switch_on()
+
+    def switch_on(self):
         self.board = Board(self.elf, icount=self.icount, extra=self.qemu_arguments(), before=self.before)
         self.addCleanup(self.board.stop)
+
+    def restart(self):
+        self.board.stop()
+        self.switch_on()
 
     def qemu_arguments(self):
         return []
@@ -96,14 +116,37 @@ class RobotTest(unittest.TestCase):
 
 
 def wired_as_it_can(actuators):
-    """Moves an actuator whose pin is not an output of the board to the first free output."""
-    outputs = [pin for row in PROFILE["outputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
-    wired = [actuator for actuator in actuators if "pin" in actuator]
-    taken = [int(str(actuator["pin"]), 0) for actuator in wired]
-    free = [pin for pin in outputs if pin not in taken]
-    for actuator, pin in zip(wired, taken):
-        if pin not in outputs:
-            actuator["pin"] = str(free.pop(0))
+    """Moves actuators from pins that the board does not have for them to free ones. Those for which there are none become virtual."""
+    taken = {int(str(pin), 0) for actuator in actuators for pin in pins_of(actuator)}
+    free = [pin for pin in OUTPUTS if pin not in taken]
+    enables = {}
+    for actuator in actuators:
+        allowed = AT_WILL if actuator.get("device") in ("motor", "pwm") else OUTPUTS
+        pins = pins_of(actuator)
+        found = [pin for pin in free if pin in allowed][:len(pins)]
+        if "enable" in actuator:
+            at = enables.setdefault(actuator["enable"], len(enables))
+            if at >= len(ENABLES):
+                become_virtual(actuator)
+            else:
+                actuator["enable"] = ENABLES[at]
+        elif all(int(str(pin), 0) in allowed for pin in pins):
+            continue
+        elif len(found) < len(pins):
+            become_virtual(actuator)
+        else:
+            free = [pin for pin in free if pin not in found]
+            actuator.update({"pin": str(found[0])} if "pin" in actuator else {"pins": found})
+
+
+def pins_of(actuator):
+    return [actuator["pin"]] if "pin" in actuator else actuator.get("pins", [])
+
+
+def become_virtual(actuator):
+    for wiring in ("pin", "pins", "bus", "address", "channel", "enable"):
+        actuator.pop(wiring, None)
+    actuator["type"] = "VIRTUAL"
 
 
 def host_trace(image, scenario, until_ms):

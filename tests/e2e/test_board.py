@@ -10,7 +10,7 @@ import pins
 import rsc
 import stimuli
 from board import FIRMWARE, NAME, REAL_TIME
-from support import PROFILE, PROGRAMS, LineReader, RobotTest
+from support import INPUTS, OUTPUTS, PROFILE, PROGRAMS, LineReader, RobotTest
 from traces import TraceTest
 
 sys.path.append(str(rsc.ROOT / "bench"))
@@ -21,7 +21,6 @@ MOST_LATE_US = 20_000
 READINGS_SEED = 475
 PATIENCE = 20
 RAM = 0x1000_0000  # and up; flash is below on each board
-INPUTS = [pin for row in PROFILE["inputs"] for pin in range(row["pins"][0], row["pins"][1] + 1)]
 PARTS = PROFILE.get("on_board", {})
 BY_I2C = """{"board": "%s", "actuators": [],
  "sensors": [{"name": "touch", "type": "I2C", "bus": %d, "address": "0x70", "device": "max34451",
@@ -29,7 +28,7 @@ BY_I2C = """{"board": "%s", "actuators": [],
 
 
 # The actuators that stdlib/safety_basics.rsl expects, on the first output.
-ARMS = {"actuators": [{"name": "arm", "type": "PWM", "pin": PROFILE["outputs"][0]["pins"][0], "device": "servo",
+ARMS = {"actuators": [{"name": "arm", "type": "PWM", "pin": OUTPUTS[0], "device": "servo",
                        "range": ["0deg", "100deg"]}],
         "groups": {"arms": ["arm"]}}
 FORCE = {"name": "arms", "type": "VIRTUAL", "channels": {"FORCE": {"unit": "N", "range": [0, 50]}}}

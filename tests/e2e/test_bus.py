@@ -8,7 +8,7 @@ from pathlib import Path
 
 import rsc
 from debugger import DebuggedTest
-from support import LineReader
+from support import LineReader, needs_i2c
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, NAME  # noqa: E402
@@ -28,6 +28,7 @@ ARM = {"name": "arm", "type": "VIRTUAL", "device": "virtual_actuator"}
 RULE = "WHEN {} > 5 DO\n  MOVE arm\nEND\n"
 
 
+@needs_i2c
 class Bus(DebuggedTest):
     def setUp(self):
         super().setUp()

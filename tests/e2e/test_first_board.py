@@ -4,9 +4,15 @@ import subprocess
 import sys
 import unittest
 
-from board import NAME, REAL_TIME, Board
-from first_board import port_of
+from board import DEVICES, NAME, REAL_TIME, REFERENCE, Board
+from first_board import on_board, port_of
 from rsc import ROOT, RscError
+from support import PROFILE
+
+OTHER = "microbit-v2" if NAME == REFERENCE else REFERENCE
+ROWS = 10 + sum(len(channels) for _, channels in on_board(NAME))
+# The board's own parts without readings here: QEMU has no I2C of these boards, and first_board.py cannot LOG the word of a button.
+SILENT = [name for name, wiring in PROFILE.get("on_board", {}).items() if "pin" in wiring or NAME not in DEVICES]
 
 
 def first_board(name, port):
@@ -20,20 +26,21 @@ class FirstBoard(unittest.TestCase):
             done = first_board(NAME, board.port)
         rows = [row for row in done.stdout.splitlines() if row.endswith((" ok |", " **NOT** |"))]
         wrong = [row for row in rows if row.endswith(" **NOT** |")]
-        self.assertEqual((len(rows), done.stderr), (10, ""), done.stdout)
+        self.assertEqual((len(rows), done.stderr), (ROWS, ""), done.stdout)
         # The emulator's second is longer while this machine is busy.
-        self.assertTrue(all("its second" in row for row in wrong), done.stdout)
-        self.assertEqual(done.returncode, len(wrong))
+        expected = ["its second", *(f"`{name} " for name in SILENT)]
+        self.assertTrue(all(any(what in row for what in expected) for row in wrong), done.stdout)
+        self.assertEqual(done.returncode, int(bool(wrong)))
 
     def test_another_board_is_not_what_it_should_be(self):
         with Board(icount=REAL_TIME) as board:
-            done = first_board("microbit-v2", board.port)
-        self.assertIn("| board | microbit-v2 | mps2-an386 | **NOT** |", done.stdout)
+            done = first_board(OTHER, board.port)
+        self.assertIn(f"| board | {OTHER} | {NAME} | **NOT** |", done.stdout)
         self.assertNotEqual(done.returncode, 0)
 
     def test_the_port_is_found(self):
         listed = [{"port": "/dev/ttyS0", "description": "", "board": None, "may_be": []},
-                  {"port": "/dev/ttyACM1", "description": "", "board": "microbit-v2", "may_be": [], "firmware": "0.1.0"},
+                  {"port": "/dev/ttyACM1", "description": "", "board": OTHER, "may_be": [], "firmware": "0.1.0"},
                   {"port": "/dev/ttyACM0", "description": "", "board": NAME, "may_be": [], "firmware": "0.1.0"},
                   {"drive": "/media/MICROBIT", "board": NAME}]
         self.assertEqual(port_of(NAME, listed), "/dev/ttyACM0")

@@ -8,41 +8,35 @@ import time
 import unittest
 from pathlib import Path
 
+import outputs
 import rsc
-from board import FIRMWARE
+import touched
+from board import FIRMWARE, NAME
 from debugger import INTERPRETER, PC, DebuggedTest, endless_loop
-from support import LineReader
+from support import AT_WILL, LineReader
+from touched import LINE, TAME, WATCHDOG, WILD
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
 PATIENCE = 20
-UART = 0x40004000
-RAM = 0x20000000
 NMI_NEEDS = 192  # bytes: a frame with FPU registers, and the functions that it calls
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
 OVERRUN = 1 << 22  # port/cortex-m4/fault.hpp
 AT_REST, AT_60_DEGREES = 500, 1500  # us
-PWM_PULSES = "robosync_virtual_pwm"
-WILD, TAME = 0, 1  # inputs of the sensor
-CONFIG = """{
-  "sensors": [
-    {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
-     "channels": {"WILD": {"input": 0, "range": [0, 10], "rate": "50Hz"},
-                  "TAME": {"input": 1, "range": [0, 10], "rate": "50Hz"}}}],
-  "actuators": [
-    {"name": "left_arm", "type": "PWM", "pin": 0, "device": "servo", "range": ["0deg", "120deg"],
-     "on_release": "rest"},
-    {"name": "right_arm", "type": "PWM", "pin": 1, "device": "servo", "range": ["0deg", "120deg"]}]
-}"""
-PROGRAM = """
+LEFT, RIGHT = AT_WILL[:2]
+ACTUATORS = [
+    {"name": "left_arm", "type": "PWM", "pin": LEFT, "device": "servo", "range": ["0deg", "120deg"], "on_release": "rest"},
+    {"name": "right_arm", "type": "PWM", "pin": RIGHT, "device": "servo", "range": ["0deg", "120deg"]}]
+CONFIG = {"board": NAME, "sensors": touched.SENSORS, "actuators": ACTUATORS}
+PROGRAM = f"""
 BEHAVIOR wild PRIORITY 20
-  WHEN touch WILD > 2
+  WHEN {touched.WILD_IS_TOUCHED}
   DO MOVE left_arm TO 100deg AT 20deg/s
   END
 END
 BEHAVIOR tame PRIORITY 10
-  WHEN touch TAME > 2
+  WHEN {touched.TAME_IS_TOUCHED}
   DO MOVE right_arm TO 60deg
   END
 END
@@ -53,11 +47,17 @@ class FirmwareTest(DebuggedTest):
     def setUp(self):
         super().setUp()
         self.symbols = symbols(FIRMWARE)
+        self.pulses = outputs.Outputs(self.board, self.folder).pulses
+        self.hand = touched.Hand(self.board, self.folder)
+        self.addCleanup(self.hand.close)
 
-    def upload(self, text, config_text):
+    def qemu_arguments(self):
+        return [*outputs.arguments(self.folder), *touched.arguments(self.folder), *super().qemu_arguments()]
+
+    def upload(self, text, robot):
         program, config = self.folder / "program.rsl", self.folder / "robot.json"
         program.write_text(text)
-        config.write_text(config_text)
+        config.write_text(json.dumps(robot))
         rsc.run("upload", program, "--config", config, "--port", self.board.port)
 
 
@@ -69,34 +69,29 @@ class Isolation(FirmwareTest):
 
         self.assertTrue(reader.wait_for(came, PATIENCE), f"no {wanted} in {reader.lines}")
 
-    def pulses(self):
-        """The servos' pulses."""
-        with self.debugger() as debugger:
-            return debugger.read_words(self.symbols[PWM_PULSES], 2)
-
     def main_stack_left(self):
         """Bytes of the handlers' stack that were never used: the board's RAM is zero at start."""
-        top = self.symbols["main_stack_top"]
+        size = self.symbols["main_stack_size"]
         with self.debugger() as debugger:
-            words = debugger.read_words(RAM, (top - RAM) // 4)
+            words = debugger.read_words(self.symbols["main_stack_top"] - size, size // 4)
         return 4 * next(i for i, word in enumerate(words) if word)
 
     def make_wild(self):
         """The next time the interpreter runs for the behaviour, its machine's address is that of a serial line."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
         with self.debugger() as debugger:
-            debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
-            debugger.set_register(0, UART)
+            debugger.run_to(interpreter, lambda: self.hand.change(WILD))
+            debugger.set_register(0, LINE)
 
     def make_endless(self):
         """The next time the interpreter runs for the behaviour, it jumps into an endless loop."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
         with self.debugger() as debugger:
-            debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
+            debugger.run_to(interpreter, lambda: self.hand.change(WILD))
             debugger.set_register(PC, endless_loop())
 
     def test_a_wild_behaviour_is_stopped(self):
-        self.stops(self.make_wild, cause=NO_ACCESS, address=UART)
+        self.stops(self.make_wild, cause=NO_ACCESS, address=LINE)
 
     def test_a_behaviour_that_never_ends_is_stopped(self):
         self.stops(self.make_endless, cause=OVERRUN, pc=endless_loop())
@@ -105,22 +100,19 @@ class Isolation(FirmwareTest):
         self.upload(PROGRAM, CONFIG)
         reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
         try:
-            for value in [1, 2] * 50:  # until the monitor listens
-                self.board.set_touch(value, TAME)
-                if reader.wait_for(lambda lines: lines, 0.2):
-                    break
-            self.board.set_touch(5, WILD)
+            self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))  # it listens
+            self.hand.touch(WILD)
             self.expect(reader, event="command", actuator="left_arm")
             make_wild()
             self.expect(reader, event="fault", thread="wild", **report)
             self.expect(reader, event="interrupt", behavior="wild")
             self.expect(reader, event="cancel", actuator="left_arm")
-            self.board.set_touch(6, TAME)
+            self.hand.touch(TAME)
             self.expect(reader, event="command", actuator="right_arm")
             self.expect(reader, event="done", actuator="right_arm")
         finally:
             reader.stop()
-        self.assertEqual(self.pulses(), [AT_REST, AT_60_DEGREES])
+        self.assertEqual(self.pulses(), {LEFT: AT_REST, RIGHT: AT_60_DEGREES})
         # A handler is deepest when it reports a fault; the NMI may still come on top of it.
         self.assertGreaterEqual(self.main_stack_left(), NMI_NEEDS)
         info = rsc.info(self.board.port)
@@ -131,17 +123,15 @@ class Isolation(FirmwareTest):
         self.assertGreaterEqual(status["safety_checks"], status["program_us"] // 10_000)
 
 
-SKIN_CONFIG = """{
-  "sensors": [
-    {"name": "pad", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
-     "channels": {"FORCE": {"input": 0, "range": [0, 10], "rate": "50Hz"}}},
-    {"name": "other", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
-     "channels": {"LEVEL": {"input": 1, "range": [0, 10], "rate": "50Hz"}}}],
-  "actuators": [
-    {"name": "left_arm", "type": "PWM", "pin": 0, "device": "servo", "range": ["0deg", "120deg"]},
-    {"name": "right_arm", "type": "PWM", "pin": 1, "device": "servo", "range": ["0deg", "120deg"]}],
-  "algorithms": [{"name": "skin", "module": "touch_levels", "input": "pad", "config": {"light": 1, "firm": 5}}]
-}"""
+SKIN_CONFIG = {
+    "board": NAME,
+    "sensors": [
+        {"name": "pad", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+         "channels": {"FORCE": {"input": 0, "range": [0, 10], "rate": "50Hz"}}},
+        {"name": "other", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
+         "channels": {"LEVEL": {"input": 1, "range": [0, 10], "rate": "50Hz"}}}],
+    "actuators": ACTUATORS,
+    "algorithms": [{"name": "skin", "module": "touch_levels", "input": "pad", "config": {"light": 1, "firm": 5}}]}
 SKIN_PROGRAM = """
 BEHAVIOR feels PRIORITY 20
   WHEN skin LEVEL IS firm
@@ -161,6 +151,7 @@ TICK = "SysTick_Handler"
 LOWERED = 9  # below the last behaviour
 
 
+@unittest.skipUnless(touched.ON_A_BUS, "QEMU has no I2C of this board: no sensor touches the module")
 class Algorithms(FirmwareTest):
     """A module that goes wild: it is lowered or stopped, its outputs become unknown, and everything else continues."""
 
@@ -261,17 +252,15 @@ class Algorithms(FirmwareTest):
         self.others_go_on(stopped=True, priority=LOWERED)
 
 
-SAFETY_PROGRAM = """
+SAFETY_PROGRAM = f"""
 SAFETY pinch
-  WHEN touch TAME > 7
+  WHEN {touched.TAME_IS_PRESSED}
   DO STOP ALL
-  RESUME WHEN touch TAME < 2
+  RESUME WHEN {touched.TAME_IS_FREE}
 END
 """ + PROGRAM
 IN_SANDBOX = "robosync::safety::(anonymous namespace)::run_bytecode("  # (machine, code, progress)
 KERNEL = "robosync_kernel"
-WATCHDOG = 0x40008000
-CODE = 0x400
 
 
 class Safety(FirmwareTest):
@@ -279,7 +268,7 @@ class Safety(FirmwareTest):
 
     def setUp(self):
         super().setUp()
-        self.board.set_touch(3, TAME)
+        self.hand.rest(TAME)
         self.upload(SAFETY_PROGRAM, CONFIG)
 
     def place(self, begin):
@@ -294,7 +283,7 @@ class Safety(FirmwareTest):
     def test_what_it_can_read(self):
         """As far as QEMU can tell: it checks the beginning of a page with the MPU."""
         def look(debugger):
-            places = {"the program": debugger.register(1), "flash": CODE, "the kernel": self.symbols[KERNEL],
+            places = {"the program": debugger.register(1), "flash": self.symbols["memset"], "the kernel": self.symbols[KERNEL],
                       "the watchdog": WATCHDOG}
             return {what for what, at in places.items() if debugger.read_words(at, 1) is not None}
 
@@ -307,14 +296,13 @@ class Safety(FirmwareTest):
             self.assertLess(time.monotonic(), give_up, status)
         fault = status["last_fault"]
         self.assertEqual((fault["thread"], fault["cause"], fault["address"]), ("safety", NO_ACCESS, address))
-        with self.debugger() as debugger:
-            self.assertEqual(debugger.read_words(self.symbols[PWM_PULSES], 2), [0, 0])
+        self.assertEqual(self.pulses(), {})
 
     def test_one_that_reads_what_is_not_its_own_ends_in_a_reset_with_all_outputs_off(self):
-        self.ends_in_a_reset(lambda debugger: debugger.set_register(0, UART), UART)
+        self.ends_in_a_reset(lambda debugger: debugger.set_register(0, LINE), LINE)
 
     def test_one_that_writes_what_is_not_its_own_too(self):
-        for target in (self.symbols[KERNEL], WATCHDOG, CODE):
+        for target in (self.symbols[KERNEL], WATCHDOG, self.symbols["memset"]):
             def clear(debugger):
                 debugger.set_register(0, target)
                 debugger.set_register(1, 0)
@@ -323,7 +311,7 @@ class Safety(FirmwareTest):
 
             with self.subTest(hex(target)):
                 self.ends_in_a_reset(clear, target)
-                self.board.set_touch(3, TAME)
+                self.hand.rest(TAME)
                 self.tearDown()
                 self.setUp()
 

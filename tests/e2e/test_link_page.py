@@ -105,6 +105,7 @@ class Client:
 class FromThePage(RobotTest):
     def setUp(self):
         super().setUp()
+        self.status()  # the board has started: the client of the page repeats no request
         self.client = Client(self.board.port)
         self.addCleanup(self.client.close)
 

@@ -8,6 +8,7 @@ import time
 import unittest
 
 import rsc
+from board import NAME
 from support import PROGRAMS, RobotTest
 
 PATIENCE = 20
@@ -70,7 +71,7 @@ class Monitor(RobotTest):
     def test_screen(self):
         self.start()
         screen = self.wait_for("load +[0-9.]+ %")
-        for part in ("mps2-an386", "SENSORS", "BEHAVIOURS", "ACTUATORS", "SAFETY", "LOG", "q quit"):
+        for part in (NAME, "SENSORS", "BEHAVIOURS", "ACTUATORS", "SAFETY", "LOG", "q quit"):
             self.assertIn(part, screen)
         self.terminal.type("f")
         self.wait_for("reading, such as touch.LEVEL=2")
@@ -110,7 +111,7 @@ class Monitor(RobotTest):
 
     def test_plain_lines(self):
         self.start("--plain", "--duration", "1s")
-        self.wait_for("board  mps2-an386, up")
+        self.wait_for(f"board  {NAME}, up")
         self.assertNotIn("BEHAVIOURS", self.terminal.screen())
         self.has_ended(0)
 

@@ -12,7 +12,7 @@ import pins
 import rsc
 from board import FIRMWARE, NAME
 from debugger import IN_SAFETY, PC, DebuggedTest, endless_loop
-from support import LineReader
+from support import LineReader, needs_i2c
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -32,6 +32,7 @@ BY_ITSELF = PROGRAM.replace("WHEN near X > 10 DO", "AT START DO")
 WITHOUT_ARM = 'EVERY 100ms DO LOG "no arm" END\n'
 
 
+@needs_i2c
 class ServoChip(DebuggedTest):
     def setUp(self):
         super().setUp()

@@ -13,6 +13,7 @@ import rsc
 from board import FIRMWARE
 from debugger import DebuggedTest
 from stack_depth import FRAMES
+from support import needs_i2c
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import of_the_board, symbols  # noqa: E402
@@ -34,6 +35,7 @@ END
 """
 
 
+@needs_i2c
 class Stacks(DebuggedTest):
     def setUp(self):
         super().setUp()

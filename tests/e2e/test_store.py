@@ -1,26 +1,28 @@
-"""What the shipped firmware keeps without power, in an EEPROM on the sensor's bus: the program that passed its trial. A new
-QEMU with the same file plays a board that was switched off and on."""
+"""What the shipped firmware keeps without power, in the board's store: the program that passed its trial, and numbers. A new
+QEMU with the same file plays a board that was switched off and on. ROBOSYNC_BOARD selects the board."""
 
+import contextlib
 import json
 import sys
 import time
 import unittest
 from pathlib import Path
 
+import player
 import power_cuts
 import rsc
-from board import FAST, FIRMWARE, REAL_TIME, Board
-from debugger import IN_SAFETY, INTERPRETER, PC, Debugger, endless_loop
+from board import EEPROMS, FAST, FIRMWARE, HAVE_WATCHDOG, KEEPS_BY_ITSELF, NAME, REAL_TIME
+from debugger import IN_SAFETY, PC, Debugger, endless_loop
+from player import StoredBoard
 from support import PROGRAMS, LineReader, RobotTest
-from test_isolation import CONFIG, PROGRAM, UART, WILD
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
 PATIENCE = 20
+UPLOADS = 3
 KEEP_ATTEMPTS = 5  # for a machine that stalls now and then
-SOON_US = 100_000  # from power-up to the first step
-LARGEST_SOON = 4_096  # bytes of the largest image that starts so soon
+SHORT_TRIAL = "500ms"
 STEADY, OTHER = 5, 3000  # the values at the sensor's inputs
 STEADY_CONFIG = """{
   "sensors": [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
@@ -45,36 +47,25 @@ END
 """
 
 
-FED_CONFIG = """{"sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
- "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg", "120deg"]}]}"""
-FED_PROGRAM = """SAFETY pressed
-  WHEN touch LEVEL > 5
-  DO STOP ALL
-END
-WHEN touch LEVEL < 3 DO
-  MOVE arm TO 90deg
-END
-"""
-
-
 class Switched(RobotTest):
     """A board that can be switched off and on. `icount`: REAL_TIME if a trial must not run ahead of real time."""
 
     icount = FAST
 
-    def setUp(self):
-        super().setUp()
-        self.board.stop()  # the one without a store
-        self.file = self.folder / "store"
-        self.switch_on()
-        self.addCleanup(lambda: self.board.stop())
-
     def switch_on(self, *extra):
-        self.board = Board(self.elf, icount=self.icount, extra=extra, store=self.file)
+        self.board = StoredBoard(self.elf, icount=self.icount, extra=extra, store=self.folder / "store")
+        self.addCleanup(self.board.stop)
 
     def power_cycle(self, *extra):
         self.board.stop()
         self.switch_on(*extra)
+
+    def upload(self, program, *arguments):
+        """Tries several times if the flash is played: that delays the board, on a busy machine for longer than rsc waits."""
+        for _ in range(UPLOADS - 1 if player.is_needed() else 0):
+            with contextlib.suppress(rsc.RscError):
+                return super().upload(program, *arguments)
+        return super().upload(program, *arguments)
 
     def kept(self):
         return rsc.info(self.board.port)["kept"]
@@ -90,9 +81,13 @@ class Switched(RobotTest):
         return kept
 
     def keep(self, image):
-        for _ in range(KEEP_ATTEMPTS):
+        """In real time after a short trial: nobody waits for the default's five seconds."""
+        if self.icount != REAL_TIME:
             self.upload(image)
-            if self.icount != REAL_TIME or not self.lost():
+            return self.await_kept("kept")["program"]["hash"]
+        for _ in range(KEEP_ATTEMPTS):
+            done = rsc.call("upload", image, "--port", self.board.port, "--trial", SHORT_TRIAL)
+            if done.returncode == 0 and not self.lost():
                 break
         return self.await_kept("kept")["program"]["hash"]
 
@@ -115,7 +110,7 @@ class Switched(RobotTest):
 class Store(Switched):
     def test_several_robots_each_keep_the_program_after_its_trial(self):
         image, _ = self.images()
-        with Board(self.elf, icount=self.icount, store=self.folder / "another") as other:
+        with StoredBoard(self.elf, icount=self.icount, store=self.folder / "another") as other:
             ports = [self.board.port, other.port]
             said = json.loads(rsc.run("upload", image, "--trial", "200ms", "--replace", "--fresh", "--format", "json",
                                       *(word for port in ports for word in ("--port", port))))
@@ -139,6 +134,7 @@ class Store(Switched):
         self.await_kept("kept")
         self.assertEqual(self.running(), second)
 
+    @unittest.skipUnless(NAME in EEPROMS, "its store is on no bus, and QEMU has no I2C of this board")
     def test_sensors_on_its_bus_never_wait_for_it(self):
         """While programs that measure a hundred times a second are written to the store, no transfer fails, none is late, and
         none reads a wrong value."""
@@ -158,6 +154,7 @@ class Store(Switched):
             self.assertEqual(self.board.word(pulse), 0, "it has moved")
 
 
+@unittest.skipUnless(NAME in HAVE_WATCHDOG, "QEMU has no watchdog of this board")
 class Failed(Switched):
     def test_after_its_watchdog_has_reset_it_the_robot_stands_still(self):
         self.keep(self.compile(PROGRAMS / "priorities.rsl"))
@@ -209,70 +206,7 @@ class Numbers(Switched):
         self.assertEqual(self.visits(), ["visit 1"])
 
 
-class Trial(Switched):
-    icount = REAL_TIME
-
-    def test_it_starts_with_the_program_that_stood_its_trial(self):
-        first, second = self.images()
-        self.assertIsNone(self.running())
-        kept = self.keep(first)
-        for switched in (self.power_cycle, lambda: self.board.qmp.command("system_reset")):
-            switched()
-            self.await_kept("kept")
-            status = self.status()
-            self.assertEqual(self.running(), kept)
-            self.assertLess(first.stat().st_size, LARGEST_SOON)
-            self.assertLessEqual(status["uptime_us"] - status["program_us"], SOON_US)
-        said = self.upload(second)
-        self.assertRegex(said, r"kept in [45]\.\d s if it passes its trial; after a reset before then, the robot starts with")
-        self.assertNotEqual(self.running(), kept)
-        self.power_cycle()  # in its trial
-        self.await_kept("kept")
-        self.assertEqual(self.running(), kept)
-
-    def test_one_that_is_only_tried_is_not_called_kept(self):
-        first, second = self.images()
-        kept = self.keep(first)
-        said = self.upload(second, "--no-confirm", "--trial", "300ms")
-        self.assertIn("not kept: its trial is over; the program kept before runs again", said)
-        self.assertEqual(self.running(), kept)
-        self.assertIn("only on trial: the kept program comes back in ", self.upload(second, "--no-confirm"))
-        self.assertIn("only on trial: the kept program comes back in ", rsc.run("info", "--port", self.board.port))
-
-    def test_feed_says_that_its_program_failed_its_trial(self):
-        kept = self.keep(self.images()[0])
-        config, program = self.folder / "fed.json", self.folder / "fed.rsl"
-        config.write_text(FED_CONFIG)
-        program.write_text(FED_PROGRAM)
-        fed = ("feed", "--upload", program, "--config", config, "--watch", "500ms", "--port", self.board.port)
-        done = rsc.call(*fed, "touch.LEVEL=9")
-        self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn(f"{program} failed its trial", done.stderr)
-        self.assertEqual(self.running(), kept)
-        rsc.run(*fed, "touch.LEVEL=1")
-        self.assertNotEqual(self.running(), kept)
-
-    def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):
-        kept = self.keep(self.compile(PROGRAMS / "priorities.rsl"))
-        gdb = self.folder / "gdb"
-        self.power_cycle("-gdb", f"unix:{gdb},server=on,wait=off")
-        config, program = self.folder / "robot.json", self.folder / "program.rsl"
-        config.write_text(CONFIG)
-        program.write_text(PROGRAM)
-        rsc.run("upload", program, "--config", config, "--port", self.board.port)
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        interpreter = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(INTERPRETER))
-        with Debugger(gdb) as debugger:
-            debugger.run_to(interpreter, lambda: self.board.set_touch(9, WILD))
-            debugger.set_register(0, UART)
-        self.assertTrue(reader.wait_for(lambda lines: any('"fault"' in line for line in lines[1:]), PATIENCE), reader.lines)
-        reader.stop()
-        given_up = self.await_kept("kept")["given_up"]
-        self.assertIsNotNone(given_up)
-        self.assertEqual(self.running(), kept)
-        self.assertIn(f"given up  program {given_up}: ", rsc.run("info", "--port", self.board.port))
-
-
+@unittest.skipIf(NAME in KEEPS_BY_ITSELF, "QEMU has the flash of this board, which always keeps")
 class NoStore(RobotTest):
     def test_it_says_so(self):
         said = self.upload(self.compile(PROGRAMS / "priorities.rsl"))

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from support import LineReader, RobotTest
+from support import LineReader, RobotTest, needs_i2c
 
 ROBOT = {"sensors": [
     {"name": "room", "type": "I2C", "address": "0x48", "device": "tmp105"},
@@ -18,6 +18,7 @@ PATIENCE = 20
 STEP = 0.07  # degrees: a TMP421's resolution, by which the emulated one reads too low
 
 
+@needs_i2c
 class Thermometers(RobotTest):
     def qemu_arguments(self):
         return ["-device", "tmp105,id=room,address=0x48", "-device", "tmp421,id=skin,address=0x4c"]

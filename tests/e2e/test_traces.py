@@ -81,7 +81,7 @@ class Traces(TraceTest):
         """Draws a random program; False if it is too large for a robot."""
         program = self.drawn(seed)
         program.write_text(Generator(seed).program())
-        return TOO_LARGE not in rsc.call("check", "--config", CONFIG, program).stderr
+        return TOO_LARGE not in rsc.call("check", "--config", self.for_board(CONFIG), program).stderr
 
 
 if __name__ == "__main__":

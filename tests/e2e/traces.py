@@ -2,9 +2,12 @@
 
 import json
 
+from board import KEEPS_BY_ITSELF, NAME
 from support import CONFIG, LineReader, RobotTest, host_trace
 
-FIRST_LEAD_MS = 6_000  # program time left to get the readings onto the board
+# Program time left to get the readings onto the board. In QEMU a board whose time comes from SysTick alone is the slowest: on a busy
+# machine six seconds of it last longer than rsc waits for a free place among the board's readings.
+FIRST_LEAD_MS = 1_500 if NAME in ("b-l475e-iot01a", "nucleo-l476rg") else 6_000
 AFTER_MS = 12_000  # program time in which everything that was started ends
 PATIENCE = 60  # seconds for the board to get there, on a loaded machine
 CHIPS = ("pca9685", "ssd1306")  # QEMU's buses have none of them, and a simulation does not use them
@@ -21,6 +24,8 @@ class TraceTest(RobotTest):
         image = self.compile(program, config)
         lead_ms = FIRST_LEAD_MS
         for _ in range(ATTEMPTS):
+            if NAME in KEEPS_BY_ITSELF:
+                self.restart()  # without a kept program, to which it would go back when SAFETY trips in a trial
             scenario = self.write_scenario(readings, lead_ms)
             until_ms = lead_ms + readings[-1].at_ms + AFTER_MS
             expected = host_trace(image, scenario, until_ms)
