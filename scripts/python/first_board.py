@@ -116,8 +116,8 @@ def on_board(board):
 def readings_of(name, channels, board, port, folder):
     """{channel: its readings, in the channel's unit}"""
     (folder / "robot.json").write_text(json.dumps({"board": board, "sensors": [{"name": name, "device": name}]}))
-    (folder / "robot.rsl").write_text("".join(f"EVERY 1s\nDO\n  LOG {name} {channel}\nEND\n"
-                                              for channel in channels))
+    rules = (f"WHEN {name} {channel} CHANGES\nDO LOG \"{channel}\"\nEND\n" for channel in channels)  # numbers and words
+    (folder / "robot.rsl").write_text("".join(rules))
     said = rsc.run("monitor", "--upload", folder / "robot.rsl", "--port", port, "--duration", READ, "--format", "json")
     found = {channel: [] for channel in channels}
     for event in map(json.loads, said.splitlines()):

@@ -11,8 +11,8 @@ from support import PROFILE
 
 OTHER = "microbit-v2" if NAME == REFERENCE else REFERENCE
 ROWS = 10 + sum(len(channels) for _, channels in on_board(NAME))
-# The board's own parts without readings here: QEMU has no I2C of these boards, and first_board.py cannot LOG the word of a button.
-SILENT = [name for name, wiring in PROFILE.get("on_board", {}).items() if "pin" in wiring or NAME not in DEVICES]
+# The board's own parts without readings here: QEMU has no I2C of these boards.
+SILENT = [name for name, wiring in PROFILE.get("on_board", {}).items() if "pin" not in wiring and NAME not in DEVICES]
 
 
 def first_board(name, port):
