@@ -180,10 +180,19 @@ void print_json_errors(const compiler::Result& result, const CompileOptions& opt
     std::cout << compiler::render_json(result.diagnostics, result.sources);
 }
 
+// The memory of the board that an image is for; of the default board if it names none, or one that this rsc does not know.
+policy::BoardMemory memory_for(std::span<const std::byte> bytes) {
+  vm::Image view;
+  if (!vm::view_image(bytes, view)) return board_memory();
+  const auto board = board_of(*view.header);
+  return board ? memory_of(*board) : board_memory();
+}
+
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
-    Program program(std::move(bytes), file, board_memory(), {{file}, {}, {}, {}});
+    const policy::BoardMemory memory = memory_for(bytes);
+    Program program(std::move(bytes), file, memory, {{file}, {}, {}, {}});
     if (options.judged == Judged::by_time) judge_time(program, file);  // the board checks memory
     return program;
   }

@@ -82,3 +82,31 @@ TEST_CASE("a refused record of another section is shown without a line") {
   image.change(image.view.channels[1], wrong);
   image.check("a field has a value it must not have (channels, record 1)");
 }
+
+// As large as one board takes, and larger than another one takes.
+TEST_CASE("an image is run with the memory of the board that it is for") {
+  const test::Folder folder;
+  std::string actuators, rules;
+  for (unsigned a = 0; a < 32; ++a)
+    actuators += fmt::format(R"({}{{"name": "a{}", "type": "VIRTUAL", "device": "servo"}})",
+                             a == 0 ? "" : ",", a);
+  for (unsigned b = 0; b < 60; ++b) {
+    rules += fmt::format("BEHAVIOR b{} PRIORITY {}\n", b, b + 1);
+    for (unsigned r = 0; r < 16; ++r)
+      rules += fmt::format("WHEN touch LEVEL > {}.{} DO MOVE a{} TO {}deg END\n", r % 10, r,
+                           (b + r) % 32, r);
+    rules += "END\n";
+  }
+  const std::string program = folder.write("robot.rsl", rules);
+  for (const auto& [board, fits] : {std::pair{"mps2-an386", true}, {"b-l475e-iot01a", false}}) {
+    folder.write("robot.json",
+                 fmt::format(R"({{"board": "{}", "sensors": [{{"name": "touch", "type": "VIRTUAL",
+      "channels": {{"LEVEL": {{"range": [0, 10]}}}}}}], "actuators": [{}]}})",
+                             board, actuators));
+    REQUIRE(test::rsc({"compile", program, "--anyway"}).exit == 0);
+    const Outcome outcome = test::rsc({"run", folder.path("robot.rsb"), "--duration", "1ms"});
+    CAPTURE(board, outcome.err);
+    CHECK(outcome.exit == (fits ? 0 : 1));
+    if (!fits) CHECK_THAT(outcome.err, Contains("98304"));
+  }
+}
