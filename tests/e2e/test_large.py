@@ -11,9 +11,7 @@ from support import OUTPUTS, PROFILE, SEED, LineReader, RobotTest, host_trace
 
 FIRST_VALUE = 10  # 0 means nothing to any rule
 CHANNELS = 8
-# Like the reference board; `rsc run` assumes its memory for an image of any board.
-HAS_112_KB = PROFILE["arena"]["bytes"] == 112 * 1024
-MOST_SERVOS = 32 if HAS_112_KB else 20
+MOST_SERVOS = 32 if PROFILE["arena"]["bytes"] == 112 * 1024 else 20
 
 
 def servos(count):
@@ -104,7 +102,7 @@ class Large(RobotTest):
         port = ["--port", self.board.port]
         told = set()
         for arguments in (["check", source, "--config", robot], ["upload", source, "--config", robot, *port],
-                          *([["run", image]] if HAS_112_KB else []), ["upload", image, "--anyway", *port]):
+                          ["run", image], ["upload", image, "--anyway", *port]):
             with self.subTest(arguments=arguments[:2]):
                 done = rsc.call(*arguments)
                 self.assertEqual(done.returncode, 1)
