@@ -41,7 +41,12 @@ target_sources(robosync_compiler_small PRIVATE
   config/sensors.cpp
   config/units.cpp
   config/values.cpp
-  config/wiring.cpp)
+  config/wiring.cpp
+  sema/limits.cpp
+  sema/motions.cpp
+  sema/number_lists.cpp
+  sema/perform.cpp
+  sema/timers.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE
   compiler.cpp
@@ -67,18 +72,13 @@ target_sources(robosync_compiler PRIVATE
   sema/expressions.cpp
   sema/follow.cpp
   sema/functions.cpp
-  sema/limits.cpp
-  sema/motions.cpp
   sema/lints.cpp
   sema/lists.cpp
   sema/names.cpp
-  sema/number_lists.cpp
   sema/quantities.cpp
-  sema/perform.cpp
   sema/rules.cpp
   sema/statements.cpp
   sema/texts.cpp
-  sema/timers.cpp
   sema/variables.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp
