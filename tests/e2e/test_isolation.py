@@ -22,6 +22,7 @@ from counting import symbols  # noqa: E402
 PATIENCE = 20
 NMI_NEEDS = 192  # bytes: a frame with FPU registers, and the functions that it calls
 NO_ACCESS = 0x82  # CFSR: a data access that the MPU refused, with its address
+CODE_RAM = 0x0080_0000  # nRF52833 Product Specification, memory map. QEMU has nothing there: a read that the MPU lets through is another fault
 OVERRUN = 1 << 22  # port/cortex-m4/fault.hpp
 AT_REST, AT_60_DEGREES = 500, 1500  # us
 LEFT, RIGHT = AT_WILL[:2]
@@ -76,12 +77,12 @@ class Isolation(FirmwareTest):
             words = debugger.read_words(self.symbols["main_stack_top"] - size, size // 4)
         return 4 * next(i for i, word in enumerate(words) if word)
 
-    def make_wild(self):
-        """The next time the interpreter runs for the behaviour, its machine's address is that of a serial line."""
+    def make_wild(self, address=LINE):
+        """The next time the interpreter runs for the behaviour, its machine is at this address: by default that of a serial line."""
         interpreter = next(at for name, at in self.symbols.items() if name.startswith(INTERPRETER))
         with self.debugger() as debugger:
             debugger.run_to(interpreter, lambda: self.hand.change(WILD))
-            debugger.set_register(0, LINE)
+            debugger.set_register(0, address)
 
     def make_endless(self):
         """The next time the interpreter runs for the behaviour, it jumps into an endless loop."""
@@ -92,6 +93,10 @@ class Isolation(FirmwareTest):
 
     def test_a_wild_behaviour_is_stopped(self):
         self.stops(self.make_wild, cause=NO_ACCESS, address=LINE)
+
+    @unittest.skipUnless(NAME == "microbit-v2", "no other board shows its RAM a second time")
+    def test_the_second_place_of_the_ram_is_closed_as_well(self):
+        self.stops(lambda: self.make_wild(CODE_RAM), cause=NO_ACCESS, address=CODE_RAM)
 
     def test_a_behaviour_that_never_ends_is_stopped(self):
         self.stops(self.make_endless, cause=OVERRUN, pc=endless_loop())

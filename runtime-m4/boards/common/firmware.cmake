@@ -8,6 +8,7 @@
 #   board_line      the serial line of that machine that is the link's; default: 0 (build/…/line)
 #   board_clock     if no load can read a free-running 32-bit counter: ROBOSYNC_CLOCK_IS_SYSTICK if there is none,
 #                   or ROBOSYNC_CLOCK_IS_CALLED (port/cortex-m4/clock.hpp)
+#   board_code      ROBOSYNC_CODE_BITS=n if behaviours may read only the first 2^n bytes of the code region (port/cortex-m4/isolation.cpp)
 set(board_common ${CMAKE_CURRENT_LIST_DIR})
 
 # Options for compiling the board's sources and for linking with them. The firmware, the board's tests and its benches share
@@ -73,7 +74,7 @@ function(robosync_twin ROBOSYNC_BOARD)
   unset(board_line)
   include(boards/profile.cmake)
   include(boards/${ROBOSYNC_BOARD}/board.cmake)
-  list(APPEND runtime_definitions ${board_clock})
+  list(APPEND runtime_definitions ${board_clock} ${board_code})
   if(NOT runtime_definitions STREQUAL features)
     message(FATAL_ERROR "${ROBOSYNC_BOARD} is no twin: its runtime is compiled with ${runtime_definitions}, not ${features}")
   endif()

@@ -3,3 +3,4 @@ set(board_sources board.cpp alarm.cpp analog.cpp clock.cpp echoes.cpp flash.cpp 
 set(board_script microbit_v2.ld)
 set(board_machine microbit)
 set(board_clock ROBOSYNC_CLOCK_IS_CALLED ROBOSYNC_CORE_COUNTS=4)
+set(board_code ROBOSYNC_CODE_BITS=23)  # up to 0x0080'0000, where the chip shows its RAM a second time

@@ -10,7 +10,11 @@ namespace robosync::port {
 namespace {
 
 constexpr unsigned kMemoryBits = 30;
+#if defined(ROBOSYNC_CODE_BITS)
+constexpr unsigned kCodeBits = ROBOSYNC_CODE_BITS;
+#else
 constexpr unsigned kCodeBits = 28;
+#endif
 constexpr unsigned kGuardBits = 5;
 static_assert(1U << kGuardBits == kGuard);
 
