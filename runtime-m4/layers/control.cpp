@@ -41,6 +41,7 @@ void ControlLayer::take_over(const LoadedProgram& program) {
   {
     const auto lock = kernel_.lock();
     program_ = &program;
+    for_good_ = false;
     by_rules_ = 0;
     newly_halted_ = 0;
     halted_ = stopped_ ? all() : 0;
@@ -239,7 +240,9 @@ void ControlLayer::halt(ActuatorMask actuators) {
   hold_back(fresh);
 }
 
+// After halt_for_good() no rule lets anything go: the program has hung, and may hang again.
 void ControlLayer::let_go(ActuatorMask actuators) {
+  if (for_good_) return;
   by_rules_ &= ~actuators;
   if (!stopped_) return set_free(actuators & halted());
   change(by_person_, actuators & halted(), 0);
@@ -300,7 +303,9 @@ void ControlLayer::set_free(ActuatorMask freed) {
 }
 
 void ControlLayer::halt_for_good() {
-  if (program_ != nullptr) halt(all());
+  if (program_ == nullptr) return;
+  for_good_ = true;
+  halt(all());
 }
 
 // --- the actuator's thread ---

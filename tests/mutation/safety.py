@@ -84,6 +84,7 @@ MUTANTS = (
     Mutant("a rule's end ends a stop", CONTROL, "if (!stopped_) return set_free", "return set_free"),
     Mutant("a stop does not hold for the next program", CONTROL, "halted_ = stopped_ ? all() : 0;", "halted_ = 0;"),
     Mutant("a thread that stopped leaves its pin on", CONTROL, "outputs_.halt(bit<ActuatorMask>(actuator));", "",
+    Mutant("a rule's end lets go what hung", CONTROL, "  if (for_good_) return;\n", ""),
            "its driver puts it into the safe state as well, and nobody else drives it"),
     Mutant("the program begins before the rules know", RUNTIME, "if (!begun_ && !sensors_.knows_enough()) {", "if (false) {"),
 )

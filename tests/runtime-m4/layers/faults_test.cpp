@@ -1,5 +1,8 @@
 // Threads that are stopped by a fault: what stops with them, what continues, and what the safety
 // monitor does when nothing continues.
+#include <string_view>
+#include <utility>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/peer.hpp"
@@ -34,6 +37,10 @@ BEHAVIOR low PRIORITY 10
   END
 END
 )";
+
+std::string_view running(Rig& rig) {
+  return rig.kernel.current().name();
+}
 
 void start(Rig& rig) {
   REQUIRE(rig.activate(test::compile(kProgram, kRobot)).ok());
@@ -116,6 +123,43 @@ TEST_CASE("a hung program is halted into its safe state and the watchdog is left
     CHECK(rig.board.pwm_read(3) == 700);
     CHECK(rig.status().faults == 1);
   }
+}
+
+TEST_CASE("a program that hung stays halted, whatever its SAFETY rules let go") {
+  Rig rig;
+  const auto image = test::compile(
+      "SAFETY too_near\n  WHEN near X > 90\n  DO STOP lamp\n  RESUME WHEN near X < 50\nEND\n"
+      "EVERY 20ms\nDO LIGHT lamp TO 70%\nEND\n",
+      kRobot);
+  REQUIRE(rig.activate(image).ok());
+  rig.run(10);
+  rig.feed(0, 20);
+  rig.run(200);
+  REQUIRE(rig.board.pulse(4) == 14'000);
+  bool hangs = true;  // the step thread, longer than a hang, but not long enough for the watchdog
+  rig.on_event = [&] {
+    if (running(rig) != "step" || !std::exchange(hangs, false)) return;
+    rig.kernel.sleep_until(rig.kernel.now() + 70'000);
+  };
+  rig.run(400);
+  REQUIRE_FALSE(hangs);
+  CHECK(rig.board.pulse(4) == 0);
+  rig.feed(0, 95);
+  rig.run(500);
+  rig.feed(0, 20);
+  rig.run(1000);
+  CHECK(rig.board.pulse(4) == 0);
+  rig.runtime.stop();
+  rig.run(1100);
+  rig.runtime.resume();
+  rig.run(1500);
+  CHECK(rig.board.pulse(4) == 0);
+  CHECK(rig.only("release").empty());
+
+  REQUIRE(rig.activate(image).ok());
+  rig.feed(0, 20);
+  rig.run(2000);
+  CHECK(rig.board.pulse(4) == 14'000);
 }
 
 TEST_CASE("long waiting and much work are not hanging") {
