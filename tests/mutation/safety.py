@@ -26,6 +26,7 @@ MUTANTS = (
     Mutant("a pin that is measured stays let go", GUARD, "board_.take_back(static_cast<std::uint16_t>(std::countr_zero(left)));", ";"),
     Mutant("the next program leaves on what it does not have", GUARD, "next == nullptr || !drives(*next, slot)",
            "next == nullptr"),
+    Mutant("a motor runs on before the next program's rules know", GUARD, " || moves) switch_off(slot);", ") switch_off(slot);"),
     Mutant("without a program pins stay on", GUARD, "next == nullptr || ", "next != nullptr && "),
     Mutant("who does not own a pin may drive it", GUARD, "return (free_ & bit(actuator)) != 0;",
            "return (halted_ & bit(actuator)) == 0;"),
@@ -82,9 +83,9 @@ MUTANTS = (
     Mutant("slow changes do not go on", MONITOR, "supervised_.tend_outputs();", ""),
     Mutant("a resume lets go what rules halt", CONTROL, "set_free(halted() & ~by_rules_)", "set_free(halted())"),
     Mutant("a rule's end ends a stop", CONTROL, "if (!stopped_) return set_free", "return set_free"),
+    Mutant("a rule's end lets go what hung", CONTROL, "  if (for_good_) return;\n", ""),
     Mutant("a stop does not hold for the next program", CONTROL, "halted_ = stopped_ ? all() : 0;", "halted_ = 0;"),
     Mutant("a thread that stopped leaves its pin on", CONTROL, "outputs_.halt(bit<ActuatorMask>(actuator));", "",
-    Mutant("a rule's end lets go what hung", CONTROL, "  if (for_good_) return;\n", ""),
            "its driver puts it into the safe state as well, and nobody else drives it"),
     Mutant("the program begins before the rules know", RUNTIME, "if (!begun_ && !sensors_.knows_enough()) {", "if (false) {"),
 )

@@ -255,6 +255,42 @@ TEST_CASE("of two sensors that fall silent each trips its rule when it is too ol
   CHECK(rig.only("trip") == "30 #2 trip r0\n60 #3 trip r1\n");
 }
 
+namespace {
+
+const char* const kMotorAndFan = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
+              {"name": "far", "type": "VIRTUAL", "channels": {"Y": {"range": [0, 100]}}},
+              {"name": "wall", "type": "I2C", "device": "i2c_register", "address": "0x10",
+               "channels": {"Z": {"range": [0, 100], "rate": "50Hz", "unit": "%"}}}],
+  "actuators": [{"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"},
+                {"name": "fan", "type": "PWM", "pin": 6, "device": "pwm", "on_release": "hold"}],
+  "safety": {"start": "90ms"}})";
+
+}  // namespace
+
+// Its rules are not evaluated before their readings are known, so nothing would stop a motor meanwhile.
+TEST_CASE("a motor that runs at an upload stands still until the rules of the next program know") {
+  Rig rig;
+  REQUIRE(
+      rig.activate(robosync::test::compile("AT START\nDO RUN motor TO 70%\nEND\n", kMotorAndFan))
+          .ok());
+  rig.run(1000);
+  REQUIRE(rig.board.pulse(4) == 14'000);
+  REQUIRE(rig.activate(robosync::test::compile(
+                           "SAFETY pinch\n  WHEN near X > 90 OR far Y > 90\n  DO STOP motor\n"
+                           "  RESUME WHEN near X < 50\nEND\n"
+                           "WHEN near X < 80\nDO RUN motor TO 20%\nEND\n",
+                           kMotorAndFan))
+              .ok());
+  CHECK(rig.board.pulse(4) == 0);
+  rig.feed(0, 10);
+  rig.run(1050);
+  CHECK(rig.board.pulse(4) == 0);
+  rig.feed(1, 10);
+  rig.run(1100);
+  CHECK(rig.board.pulse(4) == 4'000);
+}
+
 TEST_CASE("a rule stays tripped as long as it is in danger, whatever its RESUME WHEN says") {
   Robot robot(R"(
 SAFETY pinch
