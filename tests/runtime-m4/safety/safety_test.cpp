@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/layers/safety_region.hpp"
+#include "tests/runtime-m4/interrupts.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -289,6 +290,53 @@ TEST_CASE("a motor that runs at an upload stands still until the rules of the ne
   rig.feed(1, 10);
   rig.run(1100);
   CHECK(rig.board.pulse(4) == 4'000);
+}
+
+// A tick while the thread that brings the reading wakes SAFETY makes the step thread ready, which must not overtake it.
+TEST_CASE("no step begins with a reading that SAFETY has not seen, whenever the tick comes") {
+  const bool fed = GENERATE(false, true);
+  CAPTURE(fed);
+  const std::string channel = fed ? "near X" : "wall Z";
+  Rig rig;
+  robosync::test::Interrupts interrupts;
+  int level = 20;  // percent
+  rig.board.on_transfer = [&](std::span<const std::byte>, std::span<std::byte> in) {
+    const auto raw = static_cast<std::uint16_t>(level);
+    if (in.size() == 2) in[0] = static_cast<std::byte>(raw), in[1] = std::byte{0};
+    return true;
+  };
+  REQUIRE(rig
+              .activate(robosync::test::compile(
+                  "SAFETY pinch\n  WHEN " + channel + " > 90\n  DO STOP motor\n  RESUME WHEN " +
+                      channel + " < 50\nEND\nWHEN " + channel +
+                      " > 80\nDO\n  RUN motor TO 100%\n  RUN fan TO 100%\nEND\n"
+                      "EVERY 7ms\nDO LOG \"tick\"\nEND\n",
+                  kMotorAndFan))
+              .ok());
+  rig.run(5);
+  rig.feed(0, 20);
+  rig.run(10);
+  const std::uint64_t begin = (rig.kernel.now() - rig.status().program_us) / 1000;
+  rig.run(begin + 159);
+  REQUIRE(rig.only("trip").empty());
+  bool ticked = false;
+  interrupts.before_signal = [&](const robosync::kernel::Thread& thread) {
+    const std::string_view by = rig.kernel.current().name();
+    const std::string_view to = thread.name();
+    if (ticked || to != "safety" || (by != "feeds" && by != "wall")) return;
+    ticked = true;
+    rig.kernel.on_tick(1);
+  };
+  level = 95;
+  if (fed) rig.run(begin + 160);
+  rig.feed(0, 95);
+  rig.run(begin + 200);  // the wall is measured at 160, EVERY is due at 161
+  CHECK(ticked);
+  CHECK(rig.only("trip").find("trip r0") != std::string::npos);
+  const std::string claims = rig.only("win lose");
+  CHECK(claims.find("lose r2 DO to b0") != std::string::npos);
+  CHECK(claims.find("win r2") == std::string::npos);
+  CHECK(rig.board.pulse(6) == 0);
 }
 
 TEST_CASE("a rule stays tripped as long as it is in danger, whatever its RESUME WHEN says") {
