@@ -536,7 +536,16 @@ void ProcessingLayer::run_response(unsigned rule) {
 }
 
 void ProcessingLayer::await_behavior() {
-  await(kFinished, [this] { return layers_.behaviors.busy(); });
+  while (layers_.behaviors.busy())
+    if ((kernel_.wait(kFinished | kStopped) & kStopped) != 0) note_stops_at_work();
+}
+
+// Another thread was stopped, which may have preempted the behaviour when it had stored that it is finished, but had not made
+// the call `rest` yet. That call forgets what the behaviour was released for, so its next task must not come before it.
+void ProcessingLayer::note_stops_at_work() {
+  note_stops();
+  while (layers_.behaviors.is_at_work())
+    if ((kernel_.wait(kFinished | kStopped) & kStopped) != 0) note_stops();
 }
 
 void ProcessingLayer::conclude(unsigned rule) {

@@ -171,6 +171,7 @@ private:
   void run_response(unsigned rule);
   void await_behavior();
   void conclude(unsigned rule);
+  [[gnu::cold, gnu::noinline]] void note_stops_at_work();
   void cancel_interrupted() {
     if (cancelled_ != 0) cancel_some();
   }

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/interrupts.hpp"
 #include "tests/runtime-m4/peer.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
@@ -160,6 +161,86 @@ TEST_CASE("a program that hung stays halted, whatever its SAFETY rules let go") 
   rig.feed(0, 20);
   rig.run(2000);
   CHECK(rig.board.pulse(4) == 14'000);
+}
+
+namespace {
+
+// Two responses of one behaviour run in one step.
+const char* const kTwoResponses = R"(
+BEHAVIOR high PRIORITY 20
+  WHEN near X > 99
+  DO MOVE arm TO 100deg
+  END
+END
+BEHAVIOR low PRIORITY 5
+  WHEN near X > 80
+  DO LIGHT lamp TO 50%
+  END
+  WHEN near X > 85
+  DO LIGHT second TO 70%
+  END
+END
+)";
+const char* const kThreeOutputs = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [
+    {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"]},
+    {"name": "lamp", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"},
+    {"name": "second", "type": "PWM", "pin": 5, "device": "pwm", "on_release": "hold"}]
+})";
+constexpr std::uint32_t kRest = 2;  // kernel/calls.def
+
+}  // namespace
+
+TEST_CASE(
+    "a fault between the end of a behaviour's task and its rest does not lose its next task") {
+  for (unsigned place = 1; place <= 3; ++place) {
+    CAPTURE(place);
+    Rig rig;
+    test::Interrupts interrupts;
+    REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
+    rig.run(5);
+    rig.feed(0, 20);
+    rig.run(120);
+    unsigned rests = 0;
+    interrupts.before_call = [&](std::uint32_t number) {
+      if (number == kRest && running(rig) == "low" && ++rests == place)
+        rig.kernel.stop(rig.thread("arm"));
+    };
+    rig.feed(0, 95);
+    rig.run(400);
+    CHECK(rests == 3);
+    CHECK(rig.board.pulse(4) == 10'000);
+    CHECK(rig.board.pulse(5) == 14'000);
+    CHECK(rig.only("deadline").empty());
+    CHECK(rig.board.kicks == rig.status().safety_checks);
+  }
+}
+
+TEST_CASE("a damaged behaviour that rests in the middle of its task is stopped, the others go on") {
+  const bool reports = GENERATE(false, true);
+  CAPTURE(reports);
+  Rig rig;
+  test::Interrupts interrupts;
+  REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
+  rig.run(5);
+  rig.feed(0, 20);
+  rig.run(120);
+  bool done = false;
+  interrupts.before_call = [&](std::uint32_t number) {
+    if (number != kRest || running(rig) != "low" || std::exchange(done, true)) return;
+    RuntimePeer::finished(rig.runtime) = false;
+    if (!reports) rig.kernel.wait(1U << 31U);
+  };
+  rig.feed(0, 95);
+  rig.run(160);
+  CHECK(done);
+  CHECK(rig.status().faults == 1);
+  rig.feed(0, 100);
+  rig.run(2000);
+  CHECK(rig.board.pulse(3) != 0);
+  CHECK(rig.only("deadline").empty());
+  CHECK(rig.board.kicks == rig.status().safety_checks);
 }
 
 TEST_CASE("long waiting and much work are not hanging") {
