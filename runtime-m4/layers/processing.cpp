@@ -47,6 +47,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, std::span<const KeptNu
   untouched_ = 0;
   untouched_inputs_ = 0;
   in_pass_ = false;
+  set_due_ = 0;
   link_share_.start(program.image.header->step_cost);
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
     untouched_ |= bit<BehaviorMask>(b);
@@ -199,7 +200,8 @@ void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
 std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   Soonest due(now);
   if (layers_.variables.may_change()) {
-    if (layers_.variables.staged()) due.at(set_due_);
+    // At most a millisecond ahead: any other difference means that it has passed, however long ago.
+    if (layers_.variables.staged()) due.in(set_due_ - now == 1 ? 1 : 0);
     due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
   }
   if (!program_->image.checks.empty()) due.in(checks_.next(now));

@@ -1,4 +1,6 @@
 // Programs that run for weeks: their milliseconds have 32 bits and wrap after 49.7 days.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -58,6 +60,27 @@ TEST_CASE("SAFETY, EVERY and WAIT go on for weeks") {
     CHECK(robot.rig.board.pulse(4) == 0);
     robot.feeds(20);
     robot.weeks_pass(each);
+  }
+}
+
+TEST_CASE("what SAFETY sets takes effect at once, however long the program before it ran") {
+  const char* const program =
+      "REMEMBER bad = 0\n"
+      "SAFETY one\n  WHEN near X > 90\n  DO\n    SET bad TO 1\n    STOP motor\n"
+      "  RESUME WHEN near X < 50\nEND\nSAFETY two\n  WHEN bad > 0\n  DO STOP motor\nEND\n"
+      "WHEN near X > 50\nDO RUN motor TO 70%\nEND\n";
+  for (const unsigned before_ms : {0U, 500'500U}) {
+    CAPTURE(before_ms);
+    Rig rig;
+    if (before_ms != 0) {
+      REQUIRE(
+          rig.activate(test::compile("EVERY 1s\nDO RUN motor TO 10%\nEND\n", kLongRunRobot)).ok());
+      rig.run(before_ms);
+      rig.lines.clear();
+    }
+    REQUIRE(rig.activate(test::compile(program, kLongRunRobot)).ok());
+    rig.run(before_ms + 3000);
+    CHECK(rig.only("trip set") == "0 #0 trip r0\n0 #0 trip r2\n0 #1 set bad 1\n");
   }
 }
 
