@@ -221,6 +221,7 @@ void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
 
 // A rule that wants to run and may, or whose other side must end for it.
 void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const {
+  if (layers_.triggers.is_delayed(rule)) due.in(kLongestRest);
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
   bool silent = false;
