@@ -459,9 +459,10 @@ void OutputGuard::switch_chips_off() {
   limp_ = 0;
 }
 
+// An order that a halt refuses must not let the servo move after the halt.
 void OutputGuard::begin_order(unsigned actuator) {
   const auto lock = kernel_.lock();
-  limp_ &= ~bit(actuator);
+  if (is_free(actuator)) limp_ &= ~bit(actuator);
 }
 
 // All servos of a chip go limp, because it has one enable pin.

@@ -27,6 +27,7 @@ MUTANTS = (
     Mutant("the next program leaves on what it does not have", GUARD, "next == nullptr || !drives(*next, slot)",
            "next == nullptr"),
     Mutant("a motor runs on before the next program's rules know", GUARD, " || moves) switch_off(slot);", ") switch_off(slot);"),
+    Mutant("an order during a halt moves a servo of a chip after it", GUARD, "if (is_free(actuator)) limp_ &=", "limp_ &="),
     Mutant("without a program pins stay on", GUARD, "next == nullptr || ", "next != nullptr && "),
     Mutant("who does not own a pin may drive it", GUARD, "return (free_ & bit(actuator)) != 0;",
            "return (halted_ & bit(actuator)) == 0;"),
