@@ -277,7 +277,8 @@ std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept)
 void Runtime::hold_to_budgets(bool alive) {
   if (running_) algorithms_.hold_to_budgets();
   if (alive) return budget_.forget();
-  kernel::Thread* const over = budget_.look(kernel_);
+  kernel::Thread* over = shared_.behaviors.blocked_at_work(step_thread_);
+  if (over == nullptr) over = budget_.look(kernel_);
   if (over != nullptr) port::stop_overrun(kernel_, *over);
 }
 

@@ -133,8 +133,10 @@ void OutputGuard::ping(unsigned sensor) {
     board_.ping(wiring.bus, wiring.address);
 }
 
-// Turns off the pins that `next` does not drive in the same way. Meanwhile nothing drives any pin, not even to its safe state,
-// because that would be the safe state of another actuator.
+// Turns off the pins that `next` does not drive in the same way. With SAFETY rules it also turns off power: the rules are not
+// evaluated before their readings are known, so nothing would stop a motor meanwhile. A servo's pulses stay, because a servo
+// that gets the same pulse does not move. Meanwhile nothing drives any pin, not even to its safe state, because that would be
+// the safe state of another actuator.
 void OutputGuard::switch_off(const vm::Image* next) {
   Mask owned = 0;
   {
@@ -148,7 +150,8 @@ void OutputGuard::switch_off(const vm::Image* next) {
   switch_chips_off();
   for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
     const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
-    if (next == nullptr || !drives(*next, slot)) switch_off(slot);
+    const bool moves = next != nullptr && next->has_safety() && vm::gives_power(slot.driver);
+    if (next == nullptr || !drives(*next, slot) || moves) switch_off(slot);
   }
   lights_ = speaker_ = on_chips_ = 0;
 }
@@ -456,9 +459,10 @@ void OutputGuard::switch_chips_off() {
   limp_ = 0;
 }
 
+// An order that a halt refuses must not let the servo move after the halt.
 void OutputGuard::begin_order(unsigned actuator) {
   const auto lock = kernel_.lock();
-  limp_ &= ~bit(actuator);
+  if (is_free(actuator)) limp_ &= ~bit(actuator);
 }
 
 // All servos of a chip go limp, because it has one enable pin.

@@ -66,7 +66,7 @@ void AlgorithmLayer::fill(Unit& unit, Data& data) const {
   data.begins = 1;
   std::ranges::fill(data.outputs, ROBOSYNC_UNKNOWN);
   std::copy_n(config, module.parameters, data.config);
-  unit.budget = 2 * module.cost(config) + kInterrupts;
+  unit.budget = (2 * module.cost(config) + kInterrupts) / port::kCyclesPerCount;
 }
 
 // --- the module's thread: unprivileged ---

@@ -61,8 +61,8 @@ public:
 private:
   static constexpr kernel::Events kBegin = 2;  // besides SensorLayer::kSampled
   static constexpr kernel::Events kReleased = 1;
-  // Counts of the clock that interrupts may take in one release. Where nothing paces the line, as in an emulator, the contents
-  // of both its buffers may come and go in one go.
+  // Cycles that interrupts may take in one release. Where nothing paces the line, as in an emulator, the contents of both its
+  // buffers may come and go in one go.
   static constexpr std::uint32_t kInterrupts = 50'000;
 
   // A module's record with its budget.

@@ -98,6 +98,18 @@ bool BehaviorLayer::busy() {
   return is_released_;
 }
 
+bool BehaviorLayer::is_at_work() const {
+  return is_released_ && kernel_.state(*units_[released_].thread) == kernel::Thread::State::ready;
+}
+
+// The call `rest` makes the step thread ready and blocks the behaviour, in one critical section.
+kernel::Thread* BehaviorLayer::blocked_at_work(const kernel::Thread& step_thread) const {
+  constexpr auto kBlocked = kernel::Thread::State::blocked;
+  if (!is_released_ || kernel_.state(step_thread) != kBlocked) return nullptr;
+  kernel::Thread* const thread = units_[released_].thread;
+  return kernel_.state(*thread) == kBlocked ? thread : nullptr;
+}
+
 // The behaviour could say so of any of its own rules that does not cool down, just as it could let it trigger.
 bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
   const Result& result = *workspace_.result;

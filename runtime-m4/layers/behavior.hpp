@@ -65,6 +65,8 @@ public:
   void respond(unsigned rule, Side side);
   void go_on(unsigned rule);
   bool busy();
+  // Has the released behaviour not made the call `rest` yet? It may have finished all the same.
+  [[nodiscard, gnu::cold]] bool is_at_work() const;
   // True if the behaviour saw in its turn that it has one claim, that this claim wins, and that no
   // other response of its runs in this step; it has then run the response.
   bool sole_claim_of(unsigned behavior, Claim& claim) const;
@@ -85,6 +87,10 @@ public:
   bool has_run(unsigned rule, std::uint32_t now) const {
     return now == ran_at_ && has_run_.has(rule);
   }
+
+  // The thread of a behaviour that blocks in the middle of its task, while `step_thread` waits for it; null if none does.
+  // Its memory must be damaged, and nothing would ever wake either thread.  [the safety thread]
+  [[nodiscard, gnu::cold]] kernel::Thread* blocked_at_work(const kernel::Thread& step_thread) const;
 
   // --- for the step thread and the behaviour itself ---
   // The claim of `rule` now, if it has one. silent: the trace has already been told of it.

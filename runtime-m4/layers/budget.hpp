@@ -17,7 +17,7 @@ class Budget {
 public:
   // For one release of a behaviour, in counts of Kernel::clock(). The verifier's bound for a whole step
   // is in instructions; this allows two cycles for each of them.
-  explicit Budget(std::uint32_t step_budget) : counts_(2 * step_budget) {}
+  explicit Budget(std::uint32_t step_budget) : counts_(2 * step_budget / port::kCyclesPerCount) {}
 
   // The behaviour's thread that is over its budget, or null.  [a thread that outranks all
   // behaviours]

@@ -11,6 +11,10 @@ namespace robosync::layers {
 
 inline constexpr std::uint32_t kNever = vm::Machine::kNever;
 
+// While a time is remembered that may pass without a step, the step thread wakes at least this often, in milliseconds, to
+// forget it before its difference becomes ambiguous.
+inline constexpr std::uint32_t kLongestRest = std::uint32_t{1} << 30;
+
 using vm::reached;
 
 // `time` comes before `other`; kNever comes after everything.

@@ -41,6 +41,7 @@ void ControlLayer::take_over(const LoadedProgram& program) {
   {
     const auto lock = kernel_.lock();
     program_ = &program;
+    for_good_ = false;
     by_rules_ = 0;
     newly_halted_ = 0;
     halted_ = stopped_ ? all() : 0;
@@ -239,7 +240,9 @@ void ControlLayer::halt(ActuatorMask actuators) {
   hold_back(fresh);
 }
 
+// After halt_for_good() no rule lets anything go: the program has hung, and may hang again.
 void ControlLayer::let_go(ActuatorMask actuators) {
+  if (for_good_) return;
   by_rules_ &= ~actuators;
   if (!stopped_) return set_free(actuators & halted());
   change(by_person_, actuators & halted(), 0);
@@ -271,7 +274,8 @@ void ControlLayer::hold_back(ActuatorMask fresh) {
   note_halt(fresh);
 }
 
-// Puts the drivers into their safe states, and tells the trace.
+// Puts the drivers into their safe states, and tells the trace. A thread that is not blocked may be in a driver call, and write
+// the same state: it does the rest itself, after the call (run()).
 void ControlLayer::note_halt(ActuatorMask fresh) {
   {
     const auto lock = kernel_.lock();
@@ -280,7 +284,8 @@ void ControlLayer::note_halt(ActuatorMask fresh) {
   }
   for (ActuatorMask left = fresh; left != 0; left &= left - 1) {
     Unit& unit = units_[static_cast<unsigned>(std::countr_zero(left))];
-    release(unit, wiring(unit).safe);
+    if (kernel_.state(*unit.thread) == kernel::Thread::State::blocked)
+      release(unit, wiring(unit).safe);
     trace_.emit(EventKind::halt, trace_.now(), unit.actuator);
     kernel_.signal(*unit.thread, kHalt);
   }
@@ -300,7 +305,9 @@ void ControlLayer::set_free(ActuatorMask freed) {
 }
 
 void ControlLayer::halt_for_good() {
-  if (program_ != nullptr) halt(all());
+  if (program_ == nullptr) return;
+  for_good_ = true;
+  halt(all());
 }
 
 // --- the actuator's thread ---
@@ -318,8 +325,10 @@ void ControlLayer::run(Unit& unit) {
       wake = kernel::kForever;
       continue;
     }
-    if (is_halted(unit)) {
+    const bool was_halted = (events & kHalt) != 0;  // and may have been let go since
+    if (was_halted || is_halted(unit)) {
       drop_all(unit);
+      if (was_halted) release(unit, wiring(unit).safe);
       unit.busy = false;
       wake = kernel::kForever;
       continue;
@@ -422,8 +431,10 @@ kernel::Time ControlLayer::keep_at(Unit& unit, kernel::Time wake, const Stamp& s
   return kernel::kForever;
 }
 
+// A halt may come during the call, as in keep_at(): then the driver would remember a position that the actuator has left.
 void ControlLayer::put_at_rest(Unit& unit) {
-  release(unit, is_halted(unit) ? wiring(unit).safe : wiring(unit).on_release);
+  if (!is_halted(unit)) release(unit, wiring(unit).on_release);
+  if (is_halted(unit)) release(unit, wiring(unit).safe);
   unit.busy = false;
 }
 

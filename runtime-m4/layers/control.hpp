@@ -172,6 +172,7 @@ private:
   std::atomic<ActuatorMask> halted_ = 0;
   std::atomic<ActuatorMask> newly_halted_ = 0;
   ActuatorMask by_rules_ = 0;  // halted by the program's own rules, or because it hangs
+  bool for_good_ = false;      // because it hangs: until the next program
   bool stopped_ = false;       // by a person
   // Of those that are halted or were halted last: those that a person keeps stopped and that no rule halted before. For traces.
   std::atomic<ActuatorMask> by_person_ = 0;

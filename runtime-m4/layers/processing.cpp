@@ -48,6 +48,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, const Beginnings& begi
   untouched_ = 0;
   untouched_inputs_ = 0;
   in_pass_ = false;
+  set_due_ = 0;
   link_share_.start(program.image.header->step_cost);
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b) {
     untouched_ |= bit<BehaviorMask>(b);
@@ -207,7 +208,8 @@ void ProcessingLayer::report_set(unsigned variable, const Stamp& stamp) {
 std::uint32_t ProcessingLayer::next_due(std::uint32_t now) const {
   Soonest due(now);
   if (layers_.variables.may_change()) {
-    if (layers_.variables.staged()) due.at(set_due_);
+    // At most a millisecond ahead: any other difference means that it has passed, however long ago.
+    if (layers_.variables.staged()) due.in(set_due_ - now == 1 ? 1 : 0);
     due.in(layers_.variables.next_fade(now, snapshot_.values_.subspan(channels())));
   }
   if (!program_->image.checks.empty()) due.in(checks_.next(now));
@@ -227,6 +229,7 @@ void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
 
 // A rule that wants to run and may, or whose other side must end for it.
 void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const {
+  if (layers_.triggers.is_delayed(rule)) due.in(kLongestRest);
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
   bool silent = false;
@@ -244,9 +247,15 @@ kernel::Time ProcessingLayer::next_time() {
   soonest.in(next_due(now));
   soonest.at(adaptation_.next());
   const std::uint32_t delay = soonest.delay();
-  const kernel::Time due =
-      delay == kNever ? kernel::kForever : kernel_.now() + kernel::milliseconds(delay);
+  const kernel::Time due = delay == kNever ? kernel::kForever : time_after(now, delay);
   return std::min(due, layers_.mailboxes.next_expiry());
+}
+
+// The tick may have come since `now`, which is part of the delay.
+kernel::Time ProcessingLayer::time_after(std::uint32_t now, std::uint32_t delay) const {
+  const auto still = kernel_.lock();
+  const std::uint32_t passed = std::min(trace_.milliseconds() - now, delay);
+  return kernel_.time() + kernel::milliseconds(delay - passed);
 }
 
 // --- the link's turn ---
@@ -544,7 +553,16 @@ void ProcessingLayer::run_response(unsigned rule) {
 }
 
 void ProcessingLayer::await_behavior() {
-  await(kFinished, [this] { return layers_.behaviors.busy(); });
+  while (layers_.behaviors.busy())
+    if ((kernel_.wait(kFinished | kStopped) & kStopped) != 0) note_stops_at_work();
+}
+
+// Another thread was stopped, which may have preempted the behaviour when it had stored that it is finished, but had not made
+// the call `rest` yet. That call forgets what the behaviour was released for, so its next task must not come before it.
+void ProcessingLayer::note_stops_at_work() {
+  note_stops();
+  while (layers_.behaviors.is_at_work())
+    if ((kernel_.wait(kFinished | kStopped) & kStopped) != 0) note_stops();
 }
 
 void ProcessingLayer::conclude(unsigned rule) {

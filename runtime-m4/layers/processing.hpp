@@ -143,6 +143,7 @@ private:
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time();
+  kernel::Time time_after(std::uint32_t now, std::uint32_t delay) const;
   [[gnu::cold, gnu::noinline]] void give_way();
   [[gnu::cold]] void note_stops();
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);
@@ -171,6 +172,7 @@ private:
   bool goes_on(unsigned rule) const;
   void run_response(unsigned rule);
   void await_behavior();
+  [[gnu::cold, gnu::noinline]] void note_stops_at_work();
   void conclude(unsigned rule);
   void cancel_interrupted() {
     if (cancelled_ != 0) cancel_some();

@@ -231,7 +231,7 @@ void SensorLayer::run_feeds() {
 }
 
 // One tick's worth: at most as many as the queue holds. A thread that preempts this one goes on with the rest, so
-// each entry that leaves the queue is announced under the same lock.
+// each entry that leaves the queue is announced, and rung for, under the same lock (announce_all()).
 void SensorLayer::deliver() {
   const kernel::Time now = kernel_.now();
   ChannelMask news = 0;
@@ -241,10 +241,10 @@ void SensorLayer::deliver() {
     if (!feeds_.take_due(now, entry)) break;
     if (entry.value() == vm::kUnknown) continue;
     const ChannelMask mine = publish(entry.channel(), entry.value(), kernel_.now());
-    mailboxes_.announce(mine);
+    announce_to_safety(mine);
     news |= mine;
   }
-  if (news != 0) tell(news);
+  if (news != 0) kernel_.signal(step_thread_, news_);
   if (awaited_ != 0 && sample_thread_ != nullptr) kernel_.signal(*sample_thread_, kSampled);
 }
 
@@ -258,15 +258,17 @@ ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value, kernel::
   return mailboxes_.post(reading, wiring);
 }
 
-[[gnu::always_inline]] inline void SensorLayer::tell(ChannelMask channels) {
-  alarm_.ring(channels);  // safety first; its work is part of the step with the reading
-  kernel_.signal(step_thread_, news_);
+// Safety first: its work is part of the step with the reading. A tick may make the step thread ready at any time. Under the
+// lock it comes too early, when nothing is announced, or too late, when the safety thread, which outranks the step thread, is
+// ready too. In between, a step would begin with a reading that SAFETY has not seen.
+[[gnu::always_inline]] inline void SensorLayer::announce_to_safety(ChannelMask channels) {
+  mailboxes_.announce(channels, [&] { alarm_.ring(channels); });
 }
 
 [[gnu::always_inline]] inline void SensorLayer::announce_all(ChannelMask channels) {
   if (channels == 0) return;
-  mailboxes_.announce(channels);
-  tell(channels);
+  announce_to_safety(channels);
+  kernel_.signal(step_thread_, news_);
 }
 
 void SensorLayer::announce(ChannelMask channels) {

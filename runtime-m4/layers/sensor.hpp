@@ -111,7 +111,7 @@ private:
   void serve_chip(unsigned sensor);
   void note_contact(unsigned sensor, unsigned failed);
   [[gnu::noinline]] void deliver();
-  void tell(ChannelMask channels);
+  void announce_to_safety(ChannelMask channels);
   void announce_all(ChannelMask channels);
   link::FeedError check(const link::Feed& feed) const;
 

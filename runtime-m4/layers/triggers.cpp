@@ -148,7 +148,7 @@ void Triggers::add_woken(std::uint32_t now, RuleSet& rules) const {
 void Triggers::settle_active(std::uint32_t now) {
   active_.each([&](unsigned rule) {
     State& state = phases_[rule];
-    if (state.cooling == 0 && !state.waiting) return;
+    if (!is_delayed(rule)) return;
     for (const Side side : {Side::otherwise, Side::then})
       if (cools(rule, side) && reached(until(rule, side), now))
         state.cooling = static_cast<std::uint8_t>(state.cooling & ~mask_of(side)) & 3U;

@@ -92,6 +92,10 @@ public:
   [[gnu::always_inline]] bool goes_round(unsigned rule) const {
     return is_while(rule) && judgement(rule).truth == Truth::yes;
   }
+  // It cools down or waits: settle() ends that.
+  bool is_delayed(unsigned rule) const {
+    return phases_[rule].cooling != 0 || phases_[rule].waiting;
+  }
   // When a rule that wants to run has cooled down; kNever if it does not want to.
   std::uint32_t cooled_at(unsigned rule) const;
 

@@ -6,6 +6,7 @@
 //   kStackAlignment         Alignment of stacks at which no bytes are wasted.
 //   kTimeFlows              Does time pass while threads run? On the host it advances only when all
 //                           threads are blocked.
+//   kCyclesPerCount         Cycles of the core's clock in one count of Machine::clock().
 //   kArenaScale             A program's data may take this many times the bytes it takes on the Cortex-M4.
 //   kMinStack               Minimum stack of a thread, in bytes.
 //   kUnprivilegedStackAlignment, kMaxUnprivilegedStack   Alignment and maximum bytes of an unprivileged thread's stack.

@@ -1,6 +1,7 @@
 // The tests' access to the private parts of a Runtime: its peer, a friend class.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "runtime-m4/runtime.hpp"
@@ -23,6 +24,9 @@ struct RuntimePeer {
   // A behaviour could write it, too: its thread has access to the workspace.
   static layers::Judgement& judgement(Runtime& runtime, unsigned rule) {
     return runtime.shared_.workspace.judgements[rule];
+  }
+  static std::atomic<bool>& finished(Runtime& runtime) {
+    return *runtime.shared_.workspace.finished;
   }
 };
 

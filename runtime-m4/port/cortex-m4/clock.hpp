@@ -18,6 +18,12 @@ extern "C" const volatile std::uint32_t robosync_clock;
 
 namespace robosync::port {
 
+#if defined(ROBOSYNC_CORE_COUNTS)
+inline constexpr std::uint32_t kCyclesPerCount = ROBOSYNC_CORE_COUNTS;
+#else
+inline constexpr std::uint32_t kCyclesPerCount = 1;
+#endif
+
 inline std::uint32_t read_clock() {
 #if defined(ROBOSYNC_CLOCK_IS_SYSTICK) || defined(ROBOSYNC_CLOCK_IS_CALLED)
   return robosync_read_clock();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 #include "runtime-m4/port/cortex-m4/systick.hpp"
@@ -13,24 +14,19 @@ namespace robosync::port::strikes {
 inline constexpr std::uint32_t kLongestSleep =
     0x4000'0000;                        // counts; with a late wake-up still within 32 bits
 inline constexpr unsigned kLooks = 64;  // SysTick is loaded within one count
-#if defined(ROBOSYNC_CORE_COUNTS)
-inline constexpr std::uint32_t kCoreCounts = ROBOSYNC_CORE_COUNTS;
-#else
-inline constexpr std::uint32_t kCoreCounts = 1;
-#endif
 inline constexpr std::uint32_t kSysTickOff = 6, kSysTickOn = 7;  // core clock, with its interrupt
 
 // begin() makes SysTick fire after `counts`, and go_on() at every tick from then on. There are two functions because
 // the reload value of the later periods may only be written after SysTick has loaded the first.
 inline void begin(std::uint32_t counts) {
-  core::reg(core::kSystRvr) = counts * kCoreCounts - 1;
+  core::reg(core::kSystRvr) = counts * kCyclesPerCount - 1;
   core::reg(core::kSystCvr) = 0;
   core::reg(core::kSystCsr) = kSysTickOn;
 }
 inline void go_on() {
   for (unsigned i = 0; i < kLooks && core::reg(core::kSystCvr) == 0; ++i) {
   }
-  core::reg(core::kSystRvr) = hooks::kTickCounts * kCoreCounts - 1;
+  core::reg(core::kSystRvr) = hooks::kTickCounts * kCyclesPerCount - 1;
 }
 
 // The core is about to sleep: stops SysTick, and sets an alarm after `counts`.

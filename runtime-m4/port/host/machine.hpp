@@ -24,6 +24,8 @@ struct ThreadSpec;
 namespace robosync::port {
 
 inline constexpr bool kTimeFlows = false;
+// Of Machine::clock(), which stands still.
+inline constexpr std::uint32_t kCyclesPerCount = 1;
 inline constexpr std::size_t kStackAlignment = 8;
 inline constexpr std::size_t kMinStack = 0;     // a fiber has its own host-sized stack
 inline constexpr std::size_t kArenaScale = 16;  // for larger pointers and the fibers' state

@@ -233,6 +233,34 @@ TEST_CASE("pca9685: a SAFETY rule that stops one of its servos makes all of them
   CHECK(robot.pulse(12) == 0);
 }
 
+// A halt may come while the driver begins an order.
+TEST_CASE("pca9685: an order that begins during a halt does not move the servo after it") {
+  test::NotingBoard board;
+  kernel::Kernel kernel;
+  guard::OutputGuard guard(kernel, board);
+  vm::Sensor chip{};
+  chip.driver = vm::DriverId::pca9685;
+  chip.first_input = kEnable;
+  vm::Actuator arm{};
+  arm.driver = vm::DriverId::pca9685_servo;
+  arm.pin = 3;
+  arm.safe = vm::Release::coast;
+  vm::Image image;
+  image.sensors = std::span(&chip, 1);
+  image.actuators = std::span(&arm, 1);
+  guard.own(image);
+  guard.note_chip_set_up(0);
+  guard.halt(1);
+  guard.begin_order(0);
+  guard.let_go(1);
+  guard.drive(0, 1000, 0);
+  guard::OutputGuard::Setpoint setpoint{};
+  CHECK_FALSE(guard.next_setpoint(0, 0, setpoint));
+  guard.begin_order(0);
+  guard.drive(0, 1000, 0);
+  CHECK(guard.next_setpoint(0, 0, setpoint));
+}
+
 TEST_CASE("pca9685: what holds in its safe state holds, and takes no order") {
   const std::string hold = R"(, "safe": "hold")";
   ChipRig robot;

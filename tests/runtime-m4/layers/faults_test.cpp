@@ -1,7 +1,11 @@
 // Threads that are stopped by a fault: what stops with them, what continues, and what the safety
 // monitor does when nothing continues.
+#include <string_view>
+#include <utility>
+
 #include <catch2/catch.hpp>
 
+#include "tests/runtime-m4/interrupts.hpp"
 #include "tests/runtime-m4/peer.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
@@ -34,6 +38,10 @@ BEHAVIOR low PRIORITY 10
   END
 END
 )";
+
+std::string_view running(Rig& rig) {
+  return rig.kernel.current().name();
+}
 
 void start(Rig& rig) {
   REQUIRE(rig.activate(test::compile(kProgram, kRobot)).ok());
@@ -116,6 +124,123 @@ TEST_CASE("a hung program is halted into its safe state and the watchdog is left
     CHECK(rig.board.pwm_read(3) == 700);
     CHECK(rig.status().faults == 1);
   }
+}
+
+TEST_CASE("a program that hung stays halted, whatever its SAFETY rules let go") {
+  Rig rig;
+  const auto image = test::compile(
+      "SAFETY too_near\n  WHEN near X > 90\n  DO STOP lamp\n  RESUME WHEN near X < 50\nEND\n"
+      "EVERY 20ms\nDO LIGHT lamp TO 70%\nEND\n",
+      kRobot);
+  REQUIRE(rig.activate(image).ok());
+  rig.run(10);
+  rig.feed(0, 20);
+  rig.run(200);
+  REQUIRE(rig.board.pulse(4) == 14'000);
+  bool hangs = true;  // the step thread, longer than a hang, but not long enough for the watchdog
+  rig.on_event = [&] {
+    if (running(rig) != "step" || !std::exchange(hangs, false)) return;
+    rig.kernel.sleep_until(rig.kernel.now() + 70'000);
+  };
+  rig.run(400);
+  REQUIRE_FALSE(hangs);
+  CHECK(rig.board.pulse(4) == 0);
+  rig.feed(0, 95);
+  rig.run(500);
+  rig.feed(0, 20);
+  rig.run(1000);
+  CHECK(rig.board.pulse(4) == 0);
+  rig.runtime.stop();
+  rig.run(1100);
+  rig.runtime.resume();
+  rig.run(1500);
+  CHECK(rig.board.pulse(4) == 0);
+  CHECK(rig.only("release").empty());
+
+  REQUIRE(rig.activate(image).ok());
+  rig.feed(0, 20);
+  rig.run(2000);
+  CHECK(rig.board.pulse(4) == 14'000);
+}
+
+namespace {
+
+// Two responses of one behaviour run in one step.
+const char* const kTwoResponses = R"(
+BEHAVIOR high PRIORITY 20
+  WHEN near X > 99
+  DO MOVE arm TO 100deg
+  END
+END
+BEHAVIOR low PRIORITY 5
+  WHEN near X > 80
+  DO LIGHT lamp TO 50%
+  END
+  WHEN near X > 85
+  DO LIGHT second TO 70%
+  END
+END
+)";
+const char* const kThreeOutputs = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+  "actuators": [
+    {"name": "arm", "type": "PWM", "pin": 3, "device": "servo", "range": ["0deg", "100deg"]},
+    {"name": "lamp", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"},
+    {"name": "second", "type": "PWM", "pin": 5, "device": "pwm", "on_release": "hold"}]
+})";
+constexpr std::uint32_t kRest = 2;  // kernel/calls.def
+
+}  // namespace
+
+TEST_CASE(
+    "a fault between the end of a behaviour's task and its rest does not lose its next task") {
+  for (unsigned place = 1; place <= 3; ++place) {
+    CAPTURE(place);
+    Rig rig;
+    test::Interrupts interrupts;
+    REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
+    rig.run(5);
+    rig.feed(0, 20);
+    rig.run(120);
+    unsigned rests = 0;
+    interrupts.before_call = [&](std::uint32_t number) {
+      if (number == kRest && running(rig) == "low" && ++rests == place)
+        rig.kernel.stop(rig.thread("arm"));
+    };
+    rig.feed(0, 95);
+    rig.run(400);
+    CHECK(rests == 3);
+    CHECK(rig.board.pulse(4) == 10'000);
+    CHECK(rig.board.pulse(5) == 14'000);
+    CHECK(rig.only("deadline").empty());
+    CHECK(rig.board.kicks == rig.status().safety_checks);
+  }
+}
+
+TEST_CASE("a damaged behaviour that rests in the middle of its task is stopped, the others go on") {
+  const bool reports = GENERATE(false, true);
+  CAPTURE(reports);
+  Rig rig;
+  test::Interrupts interrupts;
+  REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
+  rig.run(5);
+  rig.feed(0, 20);
+  rig.run(120);
+  bool done = false;
+  interrupts.before_call = [&](std::uint32_t number) {
+    if (number != kRest || running(rig) != "low" || std::exchange(done, true)) return;
+    RuntimePeer::finished(rig.runtime) = false;
+    if (!reports) rig.kernel.wait(1U << 31U);
+  };
+  rig.feed(0, 95);
+  rig.run(160);
+  CHECK(done);
+  CHECK(rig.status().faults == 1);
+  rig.feed(0, 100);
+  rig.run(2000);
+  CHECK(rig.board.pulse(3) != 0);
+  CHECK(rig.only("deadline").empty());
+  CHECK(rig.board.kicks == rig.status().safety_checks);
 }
 
 TEST_CASE("long waiting and much work are not hanging") {

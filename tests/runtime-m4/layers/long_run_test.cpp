@@ -1,4 +1,6 @@
 // Programs that run for weeks: their milliseconds have 32 bits and wrap after 49.7 days.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -58,6 +60,70 @@ TEST_CASE("SAFETY, EVERY and WAIT go on for weeks") {
     CHECK(robot.rig.board.pulse(4) == 0);
     robot.feeds(20);
     robot.weeks_pass(each);
+  }
+}
+
+namespace {
+
+constexpr std::uint32_t kADay = 86'400'000;  // in ticks
+
+// Nothing is due and nothing is fed for so long.
+void days_pass(LongRun& robot, unsigned days) {
+  for (unsigned day = 0; day < days; ++day) {
+    robot.rig.kernel.on_tick(kADay);
+    robot.go_on(10);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a COOLDOWN that is over does not come back after weeks in which nothing happened") {
+  const unsigned days = GENERATE(1U, 20U, 30U, 45U, 52U);
+  CAPTURE(days);
+  LongRun robot("WHEN near X > 50\nCOOLDOWN 20s\nDO RUN motor TO 70%\nEND\n");
+  robot.feeds(60);
+  robot.feeds(10);
+  days_pass(robot, days);
+  robot.rig.lines.clear();
+  robot.feeds(60);
+  const std::string won = robot.rig.only("win");
+  CHECK(std::ranges::count(won, '\n') == 1);
+}
+
+TEST_CASE("a rule whose WAITING is over does not run weeks later") {
+  const unsigned days = GENERATE(1U, 20U, 30U, 45U, 52U);
+  CAPTURE(days);
+  LongRun robot(
+      "BEHAVIOR a PRIORITY 9\nWHEN near X > 80\nDO\n  RUN motor TO 20%\n  WAIT UNTIL near X < "
+      "20\nEND\nEND\n"
+      "BEHAVIOR b PRIORITY 5\nWHEN near X > 50\nWAITING 2s\nDO RUN motor TO 70%\nEND\nEND\n");
+  robot.feeds(90);
+  REQUIRE(robot.rig.only("win lose").find("lose r1") != std::string::npos);
+  days_pass(robot, days);
+  robot.rig.lines.clear();
+  robot.feeds(10);
+  CHECK(robot.rig.only("win").empty());
+  CHECK(robot.rig.board.pulse(4) == 4'000);
+}
+
+TEST_CASE("what SAFETY sets takes effect at once, however long the program before it ran") {
+  const char* const program =
+      "REMEMBER bad = 0\n"
+      "SAFETY one\n  WHEN near X > 90\n  DO\n    SET bad TO 1\n    STOP motor\n"
+      "  RESUME WHEN near X < 50\nEND\nSAFETY two\n  WHEN bad > 0\n  DO STOP motor\nEND\n"
+      "WHEN near X > 50\nDO RUN motor TO 70%\nEND\n";
+  for (const unsigned before_ms : {0U, 500'500U}) {
+    CAPTURE(before_ms);
+    Rig rig;
+    if (before_ms != 0) {
+      REQUIRE(
+          rig.activate(test::compile("EVERY 1s\nDO RUN motor TO 10%\nEND\n", kLongRunRobot)).ok());
+      rig.run(before_ms);
+      rig.lines.clear();
+    }
+    REQUIRE(rig.activate(test::compile(program, kLongRunRobot)).ok());
+    rig.run(before_ms + 3000);
+    CHECK(rig.only("trip set") == "0 #0 trip r0\n0 #0 trip r2\n0 #1 set bad 1\n");
   }
 }
 

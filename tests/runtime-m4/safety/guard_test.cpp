@@ -96,10 +96,12 @@ bool is_safe(const vm::Actuator& actuator, std::uint32_t before, std::uint32_t a
 struct Bench {
   Bench() { board.board_pins = kPins; }
 
-  void own(std::vector<vm::Actuator> next, std::uint32_t halted = 0) {
+  void own(std::vector<vm::Actuator> next, std::uint32_t halted = 0, bool has_safety = false) {
     actuators = std::move(next);
     vm::Image image;
     image.actuators = actuators;
+    safety.priority = vm::kSafetyPriority;
+    if (has_safety) image.behaviors = std::span(&safety, 1);
     guard.begin_with(halted);
     guard.own(image);
   }
@@ -109,6 +111,7 @@ struct Bench {
   test::NotingBoard board;
   guard::OutputGuard guard{kernel, board};
   std::vector<vm::Actuator> actuators;
+  vm::Behavior safety{};
 };
 
 }  // namespace
@@ -149,6 +152,23 @@ TEST_CASE("what the next program drives in the same way stays as it is, all else
   CHECK(bench.pulse(0) == 0);
   CHECK(bench.pulse(1) == 0);  // pulses for a servo are power for a motor
   CHECK(bench.pulse(2) == 1500);
+}
+
+TEST_CASE("power goes off when the next program has SAFETY rules, and a servo's pulses stay") {
+  for (const bool has_safety : {false, true}) {
+    CAPTURE(has_safety);
+    Bench bench;
+    const std::vector<vm::Actuator> robot{on_pin(0), on_pin(1, vm::DriverId::pwm), motor(2, 3)};
+    bench.own(robot);
+    bench.guard.drive(0, 1'000, 0);
+    bench.guard.drive(1, 5'000, 0);
+    bench.guard.drive_either(2, -6'000, 0);
+    bench.own(robot, 0, has_safety);
+    CHECK(bench.pulse(0) == 1'000);
+    CHECK(bench.pulse(1) == (has_safety ? 0 : 5'000));
+    CHECK(bench.pulse(2) == 0);
+    CHECK(bench.pulse(3) == (has_safety ? 0 : 6'000));
+  }
 }
 
 TEST_CASE("an actuator that is halted takes no order until it is let go") {

@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/layers/safety_region.hpp"
+#include "tests/runtime-m4/interrupts.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -253,6 +254,89 @@ TEST_CASE("of two sensors that fall silent each trips its rule when it is too ol
   rig.feed(1, 2);
   rig.run(200);
   CHECK(rig.only("trip") == "30 #2 trip r0\n60 #3 trip r1\n");
+}
+
+namespace {
+
+const char* const kMotorAndFan = R"({
+  "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}},
+              {"name": "far", "type": "VIRTUAL", "channels": {"Y": {"range": [0, 100]}}},
+              {"name": "wall", "type": "I2C", "device": "i2c_register", "address": "0x10",
+               "channels": {"Z": {"range": [0, 100], "rate": "50Hz", "unit": "%"}}}],
+  "actuators": [{"name": "motor", "type": "PWM", "pin": 4, "device": "pwm", "on_release": "hold"},
+                {"name": "fan", "type": "PWM", "pin": 6, "device": "pwm", "on_release": "hold"}],
+  "safety": {"start": "90ms"}})";
+
+}  // namespace
+
+// Its rules are not evaluated before their readings are known, so nothing would stop a motor meanwhile.
+TEST_CASE("a motor that runs at an upload stands still until the rules of the next program know") {
+  Rig rig;
+  REQUIRE(
+      rig.activate(robosync::test::compile("AT START\nDO RUN motor TO 70%\nEND\n", kMotorAndFan))
+          .ok());
+  rig.run(1000);
+  REQUIRE(rig.board.pulse(4) == 14'000);
+  REQUIRE(rig.activate(robosync::test::compile(
+                           "SAFETY pinch\n  WHEN near X > 90 OR far Y > 90\n  DO STOP motor\n"
+                           "  RESUME WHEN near X < 50\nEND\n"
+                           "WHEN near X < 80\nDO RUN motor TO 20%\nEND\n",
+                           kMotorAndFan))
+              .ok());
+  CHECK(rig.board.pulse(4) == 0);
+  rig.feed(0, 10);
+  rig.run(1050);
+  CHECK(rig.board.pulse(4) == 0);
+  rig.feed(1, 10);
+  rig.run(1100);
+  CHECK(rig.board.pulse(4) == 4'000);
+}
+
+// A tick while the thread that brings the reading wakes SAFETY makes the step thread ready, which must not overtake it.
+TEST_CASE("no step begins with a reading that SAFETY has not seen, whenever the tick comes") {
+  const bool fed = GENERATE(false, true);
+  CAPTURE(fed);
+  const std::string channel = fed ? "near X" : "wall Z";
+  Rig rig;
+  robosync::test::Interrupts interrupts;
+  int level = 20;  // percent
+  rig.board.on_transfer = [&](std::span<const std::byte>, std::span<std::byte> in) {
+    const auto raw = static_cast<std::uint16_t>(level);
+    if (in.size() == 2) in[0] = static_cast<std::byte>(raw), in[1] = std::byte{0};
+    return true;
+  };
+  REQUIRE(rig
+              .activate(robosync::test::compile(
+                  "SAFETY pinch\n  WHEN " + channel + " > 90\n  DO STOP motor\n  RESUME WHEN " +
+                      channel + " < 50\nEND\nWHEN " + channel +
+                      " > 80\nDO\n  RUN motor TO 100%\n  RUN fan TO 100%\nEND\n"
+                      "EVERY 7ms\nDO LOG \"tick\"\nEND\n",
+                  kMotorAndFan))
+              .ok());
+  rig.run(5);
+  rig.feed(0, 20);
+  rig.run(10);
+  const std::uint64_t begin = (rig.kernel.now() - rig.status().program_us) / 1000;
+  rig.run(begin + 159);
+  REQUIRE(rig.only("trip").empty());
+  bool ticked = false;
+  interrupts.before_signal = [&](const robosync::kernel::Thread& thread) {
+    const std::string_view by = rig.kernel.current().name();
+    const std::string_view to = thread.name();
+    if (ticked || to != "safety" || (by != "feeds" && by != "wall")) return;
+    ticked = true;
+    rig.kernel.on_tick(1);
+  };
+  level = 95;
+  if (fed) rig.run(begin + 160);
+  rig.feed(0, 95);
+  rig.run(begin + 200);  // the wall is measured at 160, EVERY is due at 161
+  CHECK(ticked);
+  CHECK(rig.only("trip").find("trip r0") != std::string::npos);
+  const std::string claims = rig.only("win lose");
+  CHECK(claims.find("lose r2 DO to b0") != std::string::npos);
+  CHECK(claims.find("win r2") == std::string::npos);
+  CHECK(rig.board.pulse(6) == 0);
 }
 
 TEST_CASE("a rule stays tripped as long as it is in danger, whatever its RESUME WHEN says") {
