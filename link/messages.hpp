@@ -254,8 +254,8 @@ struct SignedOrder {    // followed by the payload of the order
 };
 inline constexpr std::size_t kMaxOrder = kMaxPayload - sizeof(SignedOrder);
 
-struct Grant {  // the end of a signed `begin`
-  ImageHash image;
+struct Grant {             // the end of a signed `begin`
+  ImageHash image;         // the first half of the SHA-512 of its bytes
   std::uint32_t trial_ms;  // this and the next two as in Activate
   std::uint8_t goes_back;
   std::uint8_t fresh;

@@ -81,8 +81,13 @@ public:
   kernel::Events rest_link(kernel::Events mask, kernel::Time deadline) {
     return shared_.processing.rest_link(mask, deadline);
   }
-  // Has a SAFETY rule of the running program tripped since it began?
-  bool has_tripped() const { return safety_rules_.have_tripped(); }
+  // The SAFETY rules of the running program that have tripped since it began: safety/safety_rules.hpp.
+  std::size_t fill_tripped(std::span<std::uint32_t> keys) const {
+    return running_ ? safety_rules_.fill_tripped(keys) : 0;
+  }
+  bool has_tripped_besides(std::span<const std::uint32_t> known) const {
+    return running_ && safety_rules_.have_tripped_besides(known);
+  }
 
   // A reading for a fed channel: now (at_us 0) or at a program time. Sensors with the driver
   // virtual_sensor or with period 0 are fed. The unknown value is a failed reading.

@@ -31,6 +31,7 @@ target_sources(robosync_runtime PRIVATE
   layers/variables.cpp
   layers/workspace.cpp
   guard/output_guard.cpp
+  safety/rule_key.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/algorithm.cpp

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime-m4/layers/report.hpp"
+#include "runtime-m4/safety/rule_key.hpp"
 
 namespace robosync::safety {
 
@@ -31,7 +32,8 @@ void SafetyRules::start(const layers::LoadedProgram& program, const layers::Safe
   tripped_.start(memory.take<policy::Part::tripped, layers::RuleSet::Word>());
   output_ = region.output;
   work_ = region.work;
-  have_tripped_ = false;
+  for (auto& word : ever_tripped_)
+    word = 0;
   inputs_ = {};
   first_rule_ = end_rule_ = nullptr;
   const vm::Image& image = program.image;
@@ -120,7 +122,7 @@ void SafetyRules::note_zero_divide(const vm::Rule& rule) {
 void SafetyRules::trip(const vm::Rule& rule) {
   const unsigned number = number_of(rule);
   tripped_.insert(number);
-  have_tripped_.store(true, std::memory_order_relaxed);
+  note_trip(number);
   layers_.trace.emit(EventKind::trip, layers_.trace.now(), number);
   vm::OutputReader reader(run_body(rule));
   vm::Output said{};
@@ -132,6 +134,32 @@ void SafetyRules::trip(const vm::Rule& rule) {
       {.frame = frame_, .assigned = machine.assigned, .shifted = machine.shifted},
       program_->image.behaviors[vm::kSafetyBehavior], snapshot());
   kernel_.signal(step_thread_, acted_);
+}
+
+// Only the safety thread writes, so nothing is lost between the load and the store.
+void SafetyRules::note_trip(unsigned number) {
+  std::atomic<std::uint32_t>& word = ever_tripped_[number / kBits];
+  const std::uint32_t bit = std::uint32_t{1} << number % kBits;
+  word.store(word.load(std::memory_order_relaxed) | bit, std::memory_order_relaxed);
+}
+
+bool SafetyRules::has_ever_tripped(unsigned number) const {
+  return (ever_tripped_[number / kBits].load(std::memory_order_relaxed) >> number % kBits & 1) != 0;
+}
+
+std::size_t SafetyRules::fill_tripped(std::span<std::uint32_t> keys) const {
+  std::size_t count = 0;
+  for (const vm::Rule& rule : rules())
+    if (has_ever_tripped(number_of(rule)) && count < keys.size())
+      keys[count++] = rule_key(program_->image, rule);
+  return count;
+}
+
+bool SafetyRules::have_tripped_besides(std::span<const std::uint32_t> known) const {
+  return std::ranges::any_of(rules(), [&](const vm::Rule& rule) {
+    return has_ever_tripped(number_of(rule)) &&
+           std::ranges::find(known, rule_key(program_->image, rule)) == known.end();
+  });
 }
 
 // Returns the body's output.

@@ -12,7 +12,9 @@
 // is a fault of the safety thread: outputs off, reset.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -54,7 +56,10 @@ public:
   // Evaluates all rules. Returns the time at which a time word of theirs is due.  [safety thread]
   kernel::Time look();
 
-  bool have_tripped() const { return have_tripped_; }  // has any rule, since start()?  [any]
+  // The rules that have tripped since start(), as their rule_key()s. Returns how many; those that find no room are left out.  [any]
+  std::size_t fill_tripped(std::span<std::uint32_t> keys) const;
+  // Has one of them a key that is not in `known`?  [any]
+  bool have_tripped_besides(std::span<const std::uint32_t> known) const;
 
 private:
   void latch(std::uint32_t tick);
@@ -71,6 +76,9 @@ private:
   [[gnu::cold]] void act(const vm::Output& said, layers::ActuatorMask halted);
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
+  void note_trip(unsigned number);
+  bool has_ever_tripped(unsigned number) const;
+  std::span<const vm::Rule> rules() const { return {first_rule_, end_rule_}; }
   kernel::Time next_look(std::uint32_t tick);
   const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
 
@@ -85,7 +93,9 @@ private:
   std::size_t channels_ = 0;        // of the image: inputs with lower numbers are channels
   const vm::Word* code_ = nullptr;  // of the image, like responses_
   const vm::Response* responses_ = nullptr;
-  std::atomic<bool> have_tripped_ = false;
+  // A bit for each number of a rule: Behavior::rule_count is a byte, and the SAFETY rules come first.
+  static constexpr unsigned kBits = 32;
+  std::array<std::atomic<std::uint32_t>, 256 / kBits> ever_tripped_{};
   layers::RuleSet tripped_;
   port::Sandbox sandbox_;
   layers::SafetyRegion::Work* work_ = nullptr;  // the bytecode may write it, output_ and frame_

@@ -54,8 +54,16 @@ void Keeper::host_activates(bool fresh) {
   while (opens())
     if (!work()) kernel_.sleep_until(due_);
   numbers_.learn(runtime_);
-  trips_count_ = runtime_.running() && !runtime_.has_tripped();
+  remember_trips();
   runtime_.begin_with(fresh ? std::span<const layers::KeptNumber>() : numbers_.all(), !fresh);
+}
+
+// The program to compare with is the one that comes back if the trial fails. So an upload during a trial changes nothing: a
+// program that has tripped in its trial would otherwise excuse itself by coming twice.
+void Keeper::remember_trips() {
+  if (on_trial() && store_.kept().bytes != 0) return;
+  trips_count_ = runtime_.running();
+  known_trips_count_ = runtime_.fill_tripped(known_trips_);
 }
 
 void Keeper::roll_back(const link::ProgramHash& hash) {
@@ -202,7 +210,8 @@ void Keeper::start_what_was_read() {
 }
 
 bool Keeper::fails_trial() const {
-  return fault_ || (trips_count_ && runtime_.has_tripped());
+  const auto known = std::span(known_trips_).first(known_trips_count_);
+  return fault_ || (trips_count_ && runtime_.has_tripped_besides(known));
 }
 
 // If there is no program to go back to, it keeps running, but is not kept.

@@ -1,12 +1,13 @@
 // Decides which program the robot starts with after a reset, and restores that program and its KEPT numbers.
 //
 // A program that the host uploads is on trial while it is written into the store. It is kept once it has run for kTrial, or for
-// as long as the host says, without a fault and without a tripped SAFETY rule. A tripped rule counts only if a program ran
-// before in which none had tripped. If the trial fails, the kept program comes back immediately; a reset before the end of the
+// as long as the host says, without a fault and without a SAFETY rule that trips, unless the same rule (safety/rule_key.hpp) had
+// tripped in the program before, or no program ran before. If the trial fails, the kept program comes back immediately; a reset before the end of the
 // trial also brings it back. KEPT numbers are saved once a second if they have changed; a new program begins with those of the
 // one before. The link thread does all of this between the host's requests, one transfer at a time; an upload takes precedence.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,8 @@ public:
       kernel::milliseconds(50);  // in a trial, at the latest
   // When no program runs and the host has sent nothing for this long, the kept one starts.
   static constexpr kernel::Duration kSilence = kernel::milliseconds(3000);
+  // Tripped rules of the program before that are remembered. If there were more, those count as not tripped: that is the safe side.
+  static constexpr std::size_t kMostTrips = 16;
   // Between two parts of an erase, each of which may stall the processor: everything else gets at least this much time.
   static constexpr kernel::Duration kRest = kernel::milliseconds(10);
 
@@ -97,6 +100,7 @@ private:
   bool waits_for_a_gap();
   void ended();
   void start_what_was_read();
+  void remember_trips();
   bool fails_trial() const;
   bool judge_trial();
   bool give_up_trial();
@@ -114,7 +118,10 @@ private:
   Program running_{};
   kernel::Time trial_ends_ = 0;
   bool goes_back_ = false;    // after the trial, however well it went
-  bool trips_count_ = false;  // a SAFETY rule that trips ends the trial
+  bool trips_count_ = false;  // a SAFETY rule that trips ends the trial, unless it is known
+  std::array<std::uint32_t, kMostTrips>
+      known_trips_{};  // rules that had tripped in the program before
+  std::size_t known_trips_count_ = 0;
   kernel::Time due_ = kernel::kForever;
   kernel::Time heard_ = 0;        // from the host
   link::ProgramHash given_up_{};  // the last program that failed its trial

@@ -1,6 +1,9 @@
 """docs/link.md is sufficient to write a client: this one reads only the page, talks to the shipped firmware, uploads a
 program and receives the program's trace."""
 
+import ctypes
+import hashlib
+import os
 import re
 import struct
 import unittest
@@ -9,11 +12,14 @@ from types import SimpleNamespace
 
 from board import ROOT, socket_of
 from support import PROGRAMS, RobotTest
+from test_store import Switched
 
 PAGE = (ROOT / "docs/link.md").read_text("utf-8")
 CODES = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i", "u64": "Q", "char": "s"}
 SESSION = 0x1234ABCD
 NO_BASE = bytes(8)
+END_OF_BEGIN = "The end of a signed `begin`"
+TRIES = 20
 
 
 class Message:
@@ -44,6 +50,31 @@ def messages():
     part = PAGE.split("## Payloads", 1)[1].split("#### Kinds of events")[0]
     return {name: Message(number, text)
             for name, number, text in re.findall(r"^#### `(\w+)`: (\d+), [\w ]+\n(.*?)(?=^#### |\Z)", part, re.M | re.S)}
+
+
+def section(title):
+    """A part of the page behind the messages: the text up to the next heading."""
+    return re.search(rf"^#### {re.escape(title)}\n(.*?)(?=^#### |\Z)", PAGE, re.M | re.S)[1]
+
+
+def numbered(title):
+    """{number: name} of a table of numbers."""
+    return {int(number): name for number, name in re.findall(r"^\| (\d+) \| (\w+) \|", section(title), re.M)}
+
+
+class Key:
+    """A private key of Ed25519 (RFC 8032), with libsodium."""
+
+    def __init__(self):
+        self._sodium = ctypes.CDLL("libsodium.so.23")
+        self._secret, public = ctypes.create_string_buffer(64), ctypes.create_string_buffer(32)
+        self._sodium.crypto_sign_seed_keypair(public, self._secret, os.urandom(32))
+        self.public = public.raw
+
+    def sign(self, text):
+        signature = ctypes.create_string_buffer(64)
+        self._sodium.crypto_sign_detached(signature, None, text, ctypes.c_ulonglong(len(text)), self._secret)
+        return signature.raw
 
 
 def crc16(data):
@@ -89,6 +120,25 @@ class Client:
                 return self.messages[got].unpack(payload)
             assert got != "busy" or sequence != self._sequence, "busy"
 
+    def order(self, key, name, payload, reply):
+        """Sends an order signed with `key`."""
+        said = self.ask("get_authority", "authority")
+        number = self.messages[name].number
+        text = Message(0, section("Signed text"))
+        words = re.search(r"\| words \| `(.*)` \|", section("Signed text"))[1].encode()
+        signed = text.pack(words=words, boot=said.boot, number=said.next, type=number, length=len(payload)) + payload
+        return self.ask("signed_order", reply, payload, signature=key.sign(signed), boot=said.boot, number=said.next, type=number)
+
+    def transfer(self, image, status):
+        """What follows the reply to `begin`. Alternates between pieces that copy nothing, and data. Returns the last state."""
+        states = self.messages["transfer_status"].values["state"]
+        while states[str(status.state)] == "receiving":
+            offset = status.next_offset
+            part = image[offset:offset + 200]
+            how, head = ("data", b"") if offset % 400 == 0 else ("pieces", struct.pack("<HHH", 0, 0, len(part)))
+            status = self.ask(how, "transfer_status", head + part, session=SESSION & 0xFFFF, offset=offset)
+        return states[str(status.state)]
+
     def next(self):
         while b"\0" not in self._received:
             self._received += self._line.recv(4096)
@@ -113,16 +163,9 @@ class FromThePage(RobotTest):
         return self.client.ask("hello", "hello_reply", session=SESSION, host=b"page")
 
     def upload(self, image):
-        """Alternates between pieces that copy nothing, and data."""
         name = image[16:24]
         status = self.client.ask("begin", "transfer_status", session=SESSION, size=len(image), hash=name, base=NO_BASE)
-        states = self.client.messages["transfer_status"].values["state"]
-        while states[str(status.state)] == "receiving":
-            offset = status.next_offset
-            part = image[offset:offset + 200]
-            how, head = ("data", b"") if offset % 400 == 0 else ("pieces", struct.pack("<HHH", 0, 0, len(part)))
-            status = self.client.ask(how, "transfer_status", head + part, session=SESSION & 0xFFFF, offset=offset)
-        self.assertEqual(states[str(status.state)], "complete")
+        self.assertEqual(self.client.transfer(image, status), "complete")
         return self.client.ask("activate", "activate_result", session=SESSION, hash=name)
 
     def test_a_client_written_from_the_page_uploads_and_listens(self):
@@ -144,7 +187,8 @@ class FromThePage(RobotTest):
 
     def test_offsets_are_those_of_the_types(self):
         self.assertGreater(len(self.client.messages), 25)
-        for name, message in self.client.messages.items():
+        others = {title: Message(0, section(title)) for title in (END_OF_BEGIN, "Signed text")}
+        for name, message in {**self.client.messages, **others}.items():
             self.assertTrue(message.offsets_are_right, name)
 
     def test_what_names_no_session_changes_nothing(self):
@@ -157,6 +201,50 @@ class FromThePage(RobotTest):
         shown = bytes.fromhex(re.search(r"^((?:[0-9a-fA-F]{2} )+)  +03: the first zero", PAGE, re.M)[1])
         trace_on = self.client.messages["trace_on"]
         self.assertEqual(encoded(bytes([trace_on.number, 7]) + trace_on.pack(on=0)), shown)
+
+
+class Owner(Switched):
+    """The page is enough to own a robot, too."""
+
+    def setUp(self):
+        super().setUp()
+        self.key = Key()
+
+    def pair(self):
+        """Tries several times: the board's first minute is short, since its time runs ahead of the host's."""
+        for _ in range(TRIES):
+            self.power_cycle()
+            client = Client(self.board.port)
+            names = client.messages["authority"].values
+            seed = os.urandom(16)
+            said = client.ask("pair", "authority", key=self.key.public, seed=seed)
+            while names["denial"][str(said.denial)] == "starting":
+                said = client.ask("pair", "authority", key=self.key.public, seed=seed)
+            if names["pairing"][str(said.pairing)] == "paired":
+                self.addCleanup(client.close)
+                return client
+            client.close()
+        return self.fail("never in time")
+
+    def upload(self, client, image):
+        begin = client.messages["begin"].pack(session=SESSION, size=len(image), hash=image[16:24], base=NO_BASE)
+        ends = Message(0, section(END_OF_BEGIN)).pack(image=hashlib.sha512(image).digest()[:32])
+        self.assertEqual(client.transfer(image, client.order(self.key, "begin", begin + ends, "transfer_status")), "complete")
+        return client.ask("activate", "activate_result", session=SESSION, hash=image[16:24])
+
+    def test_a_client_written_from_the_page_signs_an_upload_and_understands_a_refusal(self):
+        image = Path(self.compile(PROGRAMS / "paper.rsl")).read_bytes()
+        client = self.pair()
+        client.ask("hello", "hello_reply", session=SESSION, host=b"page")
+        denied = client.ask("begin", "authority", session=SESSION, size=len(image), hash=image[16:24], base=NO_BASE)
+        self.assertEqual(client.messages["authority"].values["denial"][str(denied.denial)], "unsigned_order")
+        damaged = image[:4] + bytes([image[4] ^ 1]) + image[5:]  # in its CRC
+        result = self.upload(client, damaged)
+        self.assertEqual((result.running, numbered("Refusals")[result.refusal], numbered("Sections")[result.section]),
+                         (0, "bad_crc", "header"))
+        result = self.upload(client, image)
+        self.assertEqual((result.running, numbered("Refusals")[result.refusal]), (1, "none"))
+        self.assertEqual(client.ask("hello", "hello_reply", session=SESSION, host=b"page").program_hash, image[16:24])
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """A robot with an owner: the shipped firmware verifies what rsc has signed with libsodium, accepts nothing from anybody else, and
 remembers its owner after it was switched off. A stranger replays frames that he has recorded on the line."""
 
+import base64
 import os
 import re
 import stat
@@ -24,15 +25,31 @@ DENIALS = re.findall(r"^DENIAL\((\w+),", (wire.LINK / "denials.def").read_text("
 
 
 class Recorder(Tap):
-    """A line that records the bytes to the board."""
+    """A line that records the bytes to the board (`heard`) and from it (`said`)."""
 
     def __init__(self, folder, port):
-        self.heard = b""
+        self.heard = self.said = b""
         super().__init__(folder, port, FAST_LINE)
 
     def note(self, counter, data):
         if counter == "to_board":
             self.heard += data
+        else:
+            self.said += data
+
+
+def ways_to_write(secret):
+    """The bytes themselves, and how a text could show them."""
+    return [secret, secret.hex().encode(), secret.hex().upper().encode(), base64.b64encode(secret)]
+
+
+def shows(data, secret):
+    return any(way in data for way in ways_to_write(secret))
+
+
+def contents(line):
+    """What the frames of a line contain: on the line, zeros are replaced."""
+    return b"\n".join(wire.uncobs(part) or b"" for part in line.split(b"\0"))
 
 
 @unittest.skipIf(NAME in UNSIGNED, "the firmware of this board verifies no signatures")
@@ -86,6 +103,30 @@ class Owner(Switched):
         self.assertEqual(self.owner()["pairing"], "unpaired")
         file.unlink()
         self.upload(image)
+
+    def test_the_secrets_are_in_no_image_recording_trace_or_reply(self):
+        image = self.compile(PROGRAMS / "priorities.rsl")
+        rsc.run("keygen")
+        self.pair()
+        key_file = self.folder / "settings/robosync/key"
+        key = bytes.fromhex(key_file.read_text().split()[-1])
+        texts = {}
+        with Recorder(self.folder, self.board.port) as line:
+            rsc.run("upload", image, "--port", line.port)
+            for name, *words in (("monitor", "--duration", "500ms", "--format", "json", "--record", self.folder / "record.jsonl"),
+                                 ("info",), ("stop",), ("resume",)):
+                texts[name] = rsc.run(name, "--port", line.port, *words).encode()
+        self.await_kept("kept")
+        self.board.stop()
+        store = self.file.read_bytes()
+        seed = store[store.index(b"RSO1") + 40:][:16]  # KeyStore::Record: magic, number, public key, seed
+        self.assertNotIn(seed, (bytes(16), b"\xff" * 16))
+        self.assertTrue(shows(key_file.read_bytes(), key))  # the search finds what is there
+        places = {**{str(path): path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}, **texts,
+                  "to the board": contents(line.heard), "from the board": contents(line.said)}
+        self.assertLess({str(image), str(self.folder / "record.jsonl"), str(self.file)}, set(places))
+        self.assertEqual([name for name, data in places.items() if shows(data, key)], [str(key_file)])
+        self.assertEqual([name for name, data in places.items() if shows(data, seed)], [str(self.file)])
 
     def pair(self):
         """Tries several times: the board's first minute is short, since its time runs ahead of the host's."""

@@ -1,5 +1,5 @@
-"""The payloads of all messages as tables, made from link/messages.def and link/messages.hpp: the part of docs/link.md from which a
-client can be written."""
+"""The payloads of all messages as tables, and the numbers in them, made from link/ and the lists of vm/: the part of docs/link.md
+from which a client can be written."""
 
 import re
 from pathlib import Path
@@ -13,9 +13,18 @@ ALIASES = {"Name": ("char", 16), "ProgramHash": ("u8", 8), "SessionId": ("u32", 
 # Whose payload is no struct of their own name.
 PAYLOADS = {"last_fault": ["Fault"], "pieces": ["Data", "Piece"], "event": ["event"], "log": []}
 SIDES = {"to_board": "to the board", "to_host": "to the host", "order": "an order to the board"}
-FOLLOWED = {"signed_order": "Then the payload of the order.", "data": "Then bytes of the image, to the end of the payload.", "image_data": "Then the bytes, to the end of the payload.",
+FOLLOWED = {"signed_order": "Then the payload of the order.",
+            "begin": "Then, only within `signed_order`, the end of a signed `begin` (below).",
+            "data": "Then bytes of the image, to the end of the payload.", "image_data": "Then the bytes, to the end of the payload.",
             "pieces": "Then, as often as there are pieces, the following, and behind each its `count` bytes:",
             "log": "The text, to the end of the payload, in UTF-8.", "event": "Then `count` values of 4 bytes (i32)."}
+# What the comments of messages.hpp say to a reader of C++, and what the page says.
+REFERENCES = {"vm::Refusal, or kNothingToActivate: no complete transfer of this image": "see the refusals below",
+              "vm::Section": "see the sections below",
+              "driver d of vm/drivers.def is present": "driver d is present, see the drivers below",
+              "of OrderText (order.hpp) and the payload": "Ed25519 (RFC 8032), of the signed text below",
+              "MessageType of the order": "number of the order's message",
+              "this and the next two as in Activate": "this and the next two: as in `activate`"}
 EVENT = [("u64", None, "time_us", "program time of the step"), ("u32", None, "step", ""),
          ("u8", None, "kind", "see the events below"), ("u8", None, "count", "of values"),
          ("u16", None, "subject", ""), ("u16", None, "object", "")]
@@ -32,6 +41,12 @@ def _enums(text):
     return enums
 
 
+def _categories():
+    text = (ROOT / "runtime-m4/policy/standing.hpp").read_text("utf-8")
+    body = re.search(r"enum class Category : std::uint8_t \{([^}]*)\}", text)[1]
+    return ", ".join(f"{number} {name}" for number, name in enumerate(re.findall(r"\w+", body)))
+
+
 def _type(spelled, enums):
     """(type, how many of it or None)."""
     if match := re.fullmatch(r"std::array<([\w:]+), (\d+)>", spelled):
@@ -45,7 +60,10 @@ def _type(spelled, enums):
 
 
 def _comment(lines):
-    return " ".join(line.split("//", 1)[1].strip() for line in lines if "//" in line)
+    comment = " ".join(line.split("//", 1)[1].strip() for line in lines if "//" in line)
+    for said, shown in REFERENCES.items():
+        comment = comment.replace(said, shown)
+    return comment.replace("kernel::Category", _categories())
 
 
 def _fields(body, enums):
@@ -78,6 +96,43 @@ def _table(fields):
     return rows
 
 
+def _signed_text():
+    """The fields of OrderText, whose first one is always the same."""
+    text = (ROOT / "link/order.hpp").read_text("utf-8")
+    body = re.search(r"^struct OrderText \{[^\n]*\n(.*?)^\};", text, re.M | re.S)[1]
+    words = "".join(re.findall(r"'(.)'", body))
+    rest = re.sub(r"^.*?\}\};|^.*?\};", "", body, count=1, flags=re.S)
+    return [("char", len(words), "words", f"`{words}`"), *_fields(rest, {})]
+
+
+def _listed(path, macro):
+    """The entries of a .def file: (name, its last text)."""
+    return re.findall(rf'^{macro}\((\w+),.*?"([^"]*)"\)', (ROOT / path).read_text("utf-8"), re.M)
+
+
+def _numbered(title, intro, what, entries):
+    rows = [f"| {number} | {name} | {doc} |" if doc else f"| {number} | {name} | |" for number, (name, doc) in entries]
+    return [f"#### {title}", "", intro, "", f"| number | {what} | |", "|---|---|---|", *rows, ""]
+
+
+def _numbers():
+    """The numbers in the payloads that the tables there only refer to."""
+    refusals = [("none", "it runs"), *_listed("vm/refusals.def", "REFUSAL")]
+    unsent = (255, ("nothing_to_activate", "no complete transfer of this image: begin again"))
+    sections = [("header", ""), *((name, "") for name, _ in _listed("vm/sections.def", "IMAGE_SECTION"))]
+    drivers = _listed("vm/drivers.def", "(?:SENSOR|ACTUATOR)_DRIVER")
+    return [*_numbered("Refusals", "`refusal` of `activate_result`.", "refusal", [*enumerate(refusals), unsent]),
+            *_numbered("Sections", "`section` of `activate_result`: the part of the image where the mistake is. `index` is the number "
+                       "of the record in it, or of the word in the code.", "section", enumerate(sections)),
+            *_numbered("Drivers", "Bits of `drivers` of `hello_reply`.", "driver", enumerate(drivers))]
+
+
+def _signing():
+    return ["#### The end of a signed `begin`", "", "What `activate` will say, and which image it may activate.", "",
+            *_table(structs()["Grant"]), "", "#### Signed text", "", "What the signature of a `signed_order` covers.", "",
+            *_table(_signed_text()), "", "Then the payload of the order.", ""]
+
+
 def tables():
     known, lines = structs(), []
     listed = re.findall(r'^MESSAGE\((\w+),\s*(\d+),\s*(\w+),\s*"(.*)"\)',
@@ -94,6 +149,7 @@ def tables():
             lines += [*_table(known[part]), ""]
         if not payload and name not in FOLLOWED:
             lines += ["No payload.", ""]
+    lines += [*_signing(), *_numbers()]
     events = re.findall(r'^EVENT\((\w+),\s*(\d+),\s*(\w+),\s*(\w+),\s*"(.*?)",\s*"(.*)"\)',
                         (ROOT / "link/events.def").read_text("utf-8"), re.M)
     lines += ["#### Kinds of events", "", "| kind | event | subject | object | values | |", "|---|---|---|---|---|---|"]

@@ -1,4 +1,5 @@
 // rsc bridge: robots that run in this process, the built rsc, and Debian's mosquitto as their broker.
+#include <array>
 #include <csignal>
 #include <map>
 #include <memory>
@@ -254,26 +255,35 @@ TEST_CASE("a broker knows which program runs, and has nothing of one that ran be
   CHECK(bridge.outcome.exit == 0);
 }
 
-TEST_CASE("a fleet of robots on one broker") {
+TEST_CASE("a fleet of twenty robots on one broker, and three who listen to all of them") {
   Broker broker;
-  Subscriber subscriber(broker);
-  constexpr int kRobots = 4;
+  Subscriber first(broker), second(broker), third(broker);
+  const std::array everybody{&first, &second, &third};
+  constexpr int kRobots = 20;
   std::vector<std::unique_ptr<Device>> robots;
   std::vector<std::unique_ptr<RunningBridge>> bridges;
   for (int i = 0; i < kRobots; ++i) {
     robots.push_back(std::make_unique<Device>());
     REQUIRE(robots.back()->run({"upload", robots.back()->program}).exit == 0);
-    bridges.push_back(
-        std::make_unique<RunningBridge>(*robots.back(), broker, "r" + std::to_string(i), "6s"));
   }
+  for (int i = 0; i < kRobots; ++i)
+    bridges.push_back(std::make_unique<RunningBridge>(*robots[static_cast<std::size_t>(i)], broker,
+                                                      "r" + std::to_string(i), "15s"));
   for (int i = 0; i < kRobots; ++i) {
+    CAPTURE(i);
     const std::string root = "robosync/r" + std::to_string(i) + "/";
-    CHECK(subscriber.wait_for(root + "online", "true"));
-    subscriber.publish(root + "do/feed/touch/LEVEL", std::to_string(i));
-    CHECK(subscriber.wait_for(root + "sensors/touch/LEVEL", "\"value\":" + std::to_string(i)));
+    const std::string level = std::to_string(i % 10);
+    CHECK(first.wait_for(root + "online", "true"));
+    // Whoever listens may also speak.
+    everybody[static_cast<std::size_t>(i) % everybody.size()]->publish(root + "do/feed/touch/LEVEL",
+                                                                       level);
+    for (Subscriber* const subscriber : everybody)
+      CHECK(subscriber->wait_for(root + "sensors/touch/LEVEL", "\"value\":" + level));
   }
-  CHECK(subscriber.wait_for("robosync/r2/actuators/left_arm", "command"));  // 2 is below 3
-  CHECK_FALSE(subscriber.has("robosync/r3/actuators/left_arm"));
+  for (Subscriber* const subscriber : everybody) {
+    CHECK(subscriber->wait_for("robosync/r12/actuators/left_arm", "command"));  // 2 is below 3
+    CHECK_FALSE(subscriber->has("robosync/r13/actuators/left_arm"));
+  }
   for (const auto& bridge : bridges) {
     bridge->join();
     CHECK(bridge->outcome.exit == 0);

@@ -21,6 +21,14 @@ struct RuntimePeer {
     processing.takes_whole_turns_ = true;
   }
 
+  // The value of an input in the last step.
+  static vm::Value value(const Runtime& runtime, std::uint8_t input) {
+    return runtime.shared_.processing.snapshot().value(input);
+  }
+  static unsigned activations(const Runtime& runtime) { return runtime.activations_; }
+  static bool has_begun(const Runtime& runtime) { return runtime.begun_; }
+  static layers::ActuatorMask halted(const Runtime& runtime) { return runtime.control_.halted(); }
+
   // A behaviour could write it, too: its thread has access to the workspace.
   static layers::Judgement& judgement(Runtime& runtime, unsigned rule) {
     return runtime.shared_.workspace.judgements[rule];

@@ -16,6 +16,7 @@
 namespace robosync::test {
 
 inline constexpr std::uint32_t kStoreBytes = 8192;
+inline constexpr unsigned kStartMs = 100;  // from a reset to the kept program
 inline constexpr auto kTrialMs = static_cast<unsigned>(update::Keeper::kTrial / 1000);
 inline constexpr auto kLookMs = static_cast<unsigned>(update::Keeper::kLook / 1000);
 
@@ -44,6 +45,23 @@ inline void run_on(Robot& robot, const tool::Program& program, bool fresh = fals
   tool::UploadOptions options;
   options.fresh = fresh;
   REQUIRE(tool::upload(client, client.hello(), program.bytes(), options).activation.running == 1);
+}
+
+// A robot that keeps `program`.
+inline void keep(MemoryStore& memory, const tool::Program& program) {
+  Robot robot(boards::kMemory, &memory);
+  run_on(robot, program);
+  robot.run(kTrialMs + 2000);
+}
+
+// The program that the robot runs soon after a reset; zeros: none.
+inline link::ProgramHash started(MemoryStore& memory) {
+  memory.switch_on();
+  Robot robot(boards::kMemory, &memory);
+  robot.run(kStartMs);
+  tool::Client client(robot);
+  const link::HelloReply hello = client.hello();
+  return hello.running == 1 ? hello.program_hash : link::ProgramHash{};
 }
 
 }  // namespace robosync::test

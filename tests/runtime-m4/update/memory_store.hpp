@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <optional>
 #include <random>
@@ -48,6 +49,7 @@ public:
       ++written;
     }
     if (other) return *other;
+    if (wrote) wrote(at + static_cast<std::uint32_t>(from.size()));
     busy_for_ = writes_take;
     return Outcome::done;
   }
@@ -68,6 +70,7 @@ public:
   bool dead = false;             // it never answers
   unsigned stalls = 0;           // a page is erased in this many parts, plus one; 0: not flash
   std::function<void()> stall;
+  std::function<void(std::uint32_t end)> wrote;  // a whole piece, up to `end`
 
 private:
   std::optional<Outcome> in_the_way() {
@@ -90,5 +93,13 @@ private:
   unsigned stalled_ = 0;
   std::mt19937 random_{1};
 };
+
+// The bytes of the store before `end`.
+template <typename T>
+T bytes_before(const MemoryStore& memory, std::uint32_t end) {
+  T value{};
+  std::memcpy(&value, memory.bytes.data() + end - sizeof value, sizeof value);
+  return value;
+}
 
 }  // namespace robosync::test

@@ -14,18 +14,19 @@ using link::Keeping;
 using link::ResetReason;
 using test::Bytes;
 using test::finish;
+using test::keep;
+using test::kStartMs;
 using test::kStoreBytes;
 using test::kTrialMs;
 using test::MemoryStore;
 using test::name_of;
 using test::Robot;
 using test::run_on;
+using test::started;
 using update::ProgramStore;
 using update::Work;
 
 namespace {
-
-constexpr unsigned kMostMs = 100;  // from a reset to the kept program
 
 Bytes some_image(unsigned seed, std::size_t size) {
   Bytes image(size);
@@ -55,23 +56,6 @@ Bytes read_kept(ProgramStore& store) {
 
 Bytes bytes_of(const tool::Program& program) {
   return {program.bytes().begin(), program.bytes().end()};
-}
-
-// A robot that keeps `program`.
-void keep(MemoryStore& memory, const tool::Program& program) {
-  Robot robot(boards::kMemory, &memory);
-  run_on(robot, program);
-  robot.run(kTrialMs + 2000);
-}
-
-// The program that the robot runs soon after a reset; zeros: none.
-link::ProgramHash started(MemoryStore& memory) {
-  memory.switch_on();
-  Robot robot(boards::kMemory, &memory);
-  robot.run(kMostMs);
-  tool::Client client(robot);
-  const link::HelloReply hello = client.hello();
-  return hello.running == 1 ? hello.program_hash : link::ProgramHash{};
 }
 
 }  // namespace
@@ -197,7 +181,7 @@ TEST_CASE(
   CHECK(started(memory) == name_of(first));
   {
     Robot robot(boards::kMemory, &memory);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     run_on(robot, second);
     robot.run(kTrialMs - 1000);
     tool::Client client(robot);
@@ -216,11 +200,11 @@ TEST_CASE("a fault in its trial brings the kept program back, and it is said") {
   for (const unsigned after_ms : {0U, 30U, 2000U}) {
     CAPTURE(after_ms);
     Robot robot(boards::kMemory, &memory);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     run_on(robot, bad);
     robot.run(after_ms);
     robot.server.report({});
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     tool::Client client(robot);
     CHECK(client.hello().program_hash == name_of(good));
     CHECK(client.kept().state == Keeping::kept);
@@ -239,7 +223,7 @@ TEST_CASE(
   keep(memory, second);
   {
     Robot robot(boards::kMemory, &memory);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     tool::Client client(robot);
     CHECK_THAT(tool::rollback_text(client.kept()),
                Catch::StartsWith("to program " + tool::text_of(name_of(first))));
@@ -248,7 +232,7 @@ TEST_CASE(
     CHECK_THAT(tool::rollback_text(client.kept()),
                Catch::StartsWith("to program " + tool::text_of(name_of(second))));
     robot.server.report({});
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     const link::Kept kept = client.kept();
     CHECK(kept.kept_hash == name_of(second));
     CHECK(kept.previous_bytes == 0);
@@ -259,12 +243,12 @@ TEST_CASE(
                                                    Catch::Contains("upload the one you want"));
     client.roll_back(name_of(first));
     client.roll_back(name_of(bad));
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     CHECK(client.hello().program_hash == name_of(second));
   }
   CHECK(started(memory) == name_of(second));
   Robot again(boards::kMemory, &memory);
-  again.run(kMostMs);
+  again.run(kStartMs);
   CHECK(tool::Client(again).kept().previous_bytes == 0);
 }
 
@@ -289,38 +273,6 @@ TEST_CASE("a cut of the power before its trial is over leaves no program that di
   }
 }
 
-namespace {
-
-// Its SAFETY rule trips immediately, because the sensor is not fed.
-tool::Program tripping(int limit) {
-  return test::compile("SAFETY guard\n  WHEN touch LEVEL > " + std::to_string(limit) +
-                       "\n  DO STOP ALL\nEND\n" + test::program_text(3));
-}
-
-// The program that runs after the trial of `program`.
-link::ProgramHash after_trial(MemoryStore& memory, const tool::Program& program) {
-  Robot robot(boards::kMemory, &memory);
-  robot.run(1000);
-  run_on(robot, program);
-  robot.run(kTrialMs + 2000);
-  return tool::Client(robot).hello().program_hash;
-}
-
-}  // namespace
-
-TEST_CASE(
-    "a SAFETY rule that trips in the trial brings the kept program back, unless one had there, "
-    "too") {
-  const tool::Program calm = test::program(3), trips = tripping(4), also = tripping(5);
-  MemoryStore memory(kStoreBytes), other(kStoreBytes);
-  keep(memory, calm);
-  CHECK(after_trial(memory, trips) == name_of(calm));
-  CHECK(started(memory) == name_of(calm));
-  keep(other, trips);  // there was no program before it
-  CHECK(after_trial(other, also) == name_of(also));
-  CHECK(started(other) == name_of(also));
-}
-
 TEST_CASE("the host says how long a trial is, and may only try a program") {
   const tool::Program kept = test::program(3), next = test::program(5);
   const auto upload = [](Robot& robot, const tool::Program& program, unsigned trial_ms,
@@ -335,7 +287,7 @@ TEST_CASE("the host says how long a trial is, and may only try a program") {
   keep(memory, kept);
   {
     Robot robot(boards::kMemory, &memory);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     const std::size_t before = memory.written;
     upload(robot, next, 2000, false);
     tool::Client client(robot);
@@ -361,10 +313,10 @@ TEST_CASE(
   const tool::Program good = test::program(3), bad = test::program(5);
   keep(memory, good);
   Robot robot(boards::kMemory, &memory);
-  robot.run(kMostMs);
+  robot.run(kStartMs);
   run_on(robot, bad);
   robot.server.report({});
-  robot.run(kMostMs);
+  robot.run(kStartMs);
   tool::Client client(robot);
   CHECK(tool::has_failed_trial(client.kept(), name_of(bad)));
   CHECK(tool::keeping_text(client.kept(), name_of(bad)) ==
@@ -400,7 +352,7 @@ TEST_CASE("of a program that is only tried nobody says that it is kept") {
   MemoryStore memory(kStoreBytes);
   keep(memory, kept);
   Robot robot(boards::kMemory, &memory);
-  robot.run(kMostMs);
+  robot.run(kStartMs);
   tool::Client client(robot);
   tool::UploadOptions options;
   options.trial = std::chrono::milliseconds(2000);
@@ -431,7 +383,7 @@ TEST_CASE("a fault after its trial, or without a program to go back to, changes 
   robot.run(kTrialMs + 2000);
   CHECK(client.kept().state == Keeping::kept);
   robot.server.report({});
-  robot.run(kMostMs);
+  robot.run(kStartMs);
   CHECK(client.hello().program_hash == name_of(program));
 }
 
@@ -442,7 +394,7 @@ TEST_CASE("a person goes back to the program before, and forth again") {
   keep(memory, first);
   {
     Robot robot(boards::kMemory, &memory);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     tool::Client client(robot);
     CHECK_THROWS_WITH(tool::roll_back(client), Catch::Contains("has kept no program before"));
     run_on(robot, second);
@@ -450,10 +402,10 @@ TEST_CASE("a person goes back to the program before, and forth again") {
     REQUIRE(client.kept().state == Keeping::kept);
     CHECK(tool::roll_back(client).program_hash == name_of(first));
     client.roll_back(name_of(first));  // requested twice
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     CHECK(client.hello().program_hash == name_of(first));
     CHECK(tool::roll_back(client).program_hash == name_of(second));
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     run_on(robot, third);
     CHECK(tool::roll_back(client).program_hash == name_of(second));  // in its trial
     robot.run(kTrialMs + 2000);
@@ -477,7 +429,7 @@ TEST_CASE("a kept program that is damaged gives way to the one before, or to non
   damage(second);
   {
     Robot robot(boards::kMemory, &memory);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     tool::Client client(robot);
     CHECK(client.hello().program_hash == name_of(first));
     CHECK(client.kept().kept_hash == name_of(first));
@@ -542,7 +494,7 @@ TEST_CASE("a host that goes away in the midst of an upload leaves no robot witho
   const tool::Program kept = test::program(3), next = test::long_program();
   keep(memory, kept);
   Robot robot(boards::kMemory, &memory);
-  robot.run(kMostMs);
+  robot.run(kStartMs);
   tool::Client client(robot);
   client.clear(name_of(kept));
   const auto size = static_cast<std::uint32_t>(next.bytes().size());
@@ -562,7 +514,7 @@ TEST_CASE("after a reset by a failure the kept program stands still until somebo
   for (const auto reason : {ResetReason::power, ResetReason::watchdog, ResetReason::software}) {
     CAPTURE(reason);
     Robot robot(boards::kMemory, &memory, reason);
-    robot.run(kMostMs);
+    robot.run(kStartMs);
     tool::Client client(robot);
     CHECK(client.hello().running == 1);
     CHECK(client.hello().stopped == (reason == ResetReason::power ? 0 : 1));
@@ -614,7 +566,7 @@ TEST_CASE(
     const tool::Program& next = programs[random() % programs.size()];
     {
       Robot robot(boards::kMemory, &memory);
-      robot.run(kMostMs);
+      robot.run(kStartMs);
       tool::Client client(robot);
       REQUIRE(client.hello().program_hash == kept);
       before = client.kept();

@@ -51,13 +51,17 @@ inline link::ProgramHash name_of(const tool::Program& program) {
 }
 
 // One that needs many data frames.
-inline tool::Program long_program() {
+inline std::string long_program_text() {
   std::string text = "BEHAVIOR count PRIORITY 40\n";
   for (int i = 0; i < 30; ++i) {
     text += "WHEN touch LEVEL = " + std::to_string(i % 10) + "." + std::to_string(i) +
             " DO\n  MOVE left_arm QUICKLY TO " + std::to_string(i) + "deg\nEND\n";
   }
-  return compile(text + "END\n");
+  return text + "END\n";
+}
+
+inline tool::Program long_program() {
+  return compile(long_program_text());
 }
 
 }  // namespace robosync::test
