@@ -31,7 +31,8 @@ public:
   explicit Client(Transport& transport, Milliseconds timeout = Milliseconds(2000),
                   bool take = false);
 
-  // These repeat the request until its reply comes, and throw Failure (outside) after the timeout.
+  // These repeat the request until its reply comes, and throw Failure (outside) after the timeout. What needs many replies fails
+  // when none has come for that long.
   link::HelloReply hello();  // opens a session; requests that need one do so themselves
   link::Status status();
   link::Fault last_fault();  // the latest one that the board has kept; no thread: none
@@ -79,6 +80,10 @@ public:
   std::optional<Message> next_unasked(Milliseconds timeout);
 
   Transport::Clock::time_point now() const { return transport_.now(); }
+  // How long no valid frame has come, counted from `start` at the earliest.
+  Milliseconds silent_for(Transport::Clock::time_point start) const;
+  // Throws Failure (outside), which says what has come instead of an answer: nothing, or what.
+  [[noreturn]] void no_answer() const;
 
 private:
   template <typename Reply>
@@ -94,7 +99,11 @@ private:
   bool receive(Transport::Clock::time_point until);
   std::optional<link::HelloReply> take_hello(std::uint8_t sequence,
                                              Transport::Clock::time_point until);
-  [[noreturn]] void no_answer() const;
+  std::optional<Message> reply_to_signed(std::uint8_t sequence, link::MessageType type,
+                                         Transport::Clock::time_point quiet_since,
+                                         Transport::Clock::time_point give_up);
+  Transport::Clock::time_point limit_of_order(Transport::Clock::time_point start) const;
+  [[noreturn]] void unanswered_order(link::MessageType type) const;
 
   Transport& transport_;
   Milliseconds timeout_;
@@ -103,6 +112,8 @@ private:
   link::SessionId session_ = introduction_.session;
   bool took_ = false;  // took over a session of this computer
   link::FrameDecoder decoder_;
+  std::optional<Transport::Clock::time_point> heard_;  // when the last valid frame came
+  std::size_t stray_bytes_ = 0;                        // that came after it
   std::uint8_t sequence_ = 0;
   std::deque<Message> replies_;
   std::deque<Message> unasked_;

@@ -20,9 +20,10 @@ void stop_board(const std::string& port) {
     Client(*transport).stop();
   } catch (const Failure& failure) {
     throw Failure(failure.exit(),
-                  std::string(failure.what()) +
-                      " It may have stopped all the same: a busy board stops first and answers "
-                      "later, and another rsc on this line may have taken the answer");
+                  followed_by(failure.what(),
+                              "It may have stopped all the same: a busy board stops first and "
+                              "answers later, and another rsc on this line may have taken the "
+                              "answer"));
   }
 }
 

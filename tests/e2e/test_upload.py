@@ -80,7 +80,7 @@ class Upload(RobotTest):
         config = self.folder / "other.json"
         config.write_text(json.dumps({**json.loads(CONFIG.read_text()), "board": other}))
         done = rsc.call("upload", PROGRAMS / "paper.rsl", "--config", config, "--port", self.board.port)
-        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.returncode, 3)
         self.assertIn(f"it is for {other}, and this is {NAME}", done.stderr)
         self.assertEqual(self.status()["activations"], 0)
 
