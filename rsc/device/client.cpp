@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "rsc/device/host_name.hpp"
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
@@ -36,15 +37,12 @@ bool is_unasked(MessageType type) {
   return type == MessageType::event || type == MessageType::log || type == MessageType::fault;
 }
 
-// This computer's name, which the board tells another host while it is busy.
 link::Hello introduction(bool take) {
   link::Hello hello{};
   std::random_device random;
   hello.session = std::max(random(), 1U);
   hello.take = static_cast<std::uint8_t>(take);
-  if (gethostname(hello.host.data(), hello.host.size()) != 0 || hello.host.front() == '\0')
-    hello.host.front() = '?';
-  hello.host.back() = '\0';
+  hello.host = host_name(getpid());
   return hello;
 }
 
@@ -103,16 +101,17 @@ std::optional<Message> Client::next_unasked(milliseconds timeout) {
   return pop(unasked_);
 }
 
-// Late replies to earlier requests are dropped. `busy` or a denial may come instead of the reply.
+// Late replies to earlier requests are dropped. `busy` or a denial may come instead of the reply. What has arrived is read even
+// after the time, in which this process may have been stopped.
 std::optional<Message> Client::reply_to(std::uint8_t sequence, MessageType type,
                                         Transport::Clock::time_point until) {
-  while (true) {
+  for (bool in_time = true;; in_time = receive(until)) {
     while (std::optional<Message> reply = pop(replies_)) {
       const bool fits = reply->type == type || reply->type == MessageType::authority ||  // denied
                         reply->type == MessageType::busy;
       if (fits && reply->sequence == sequence) return reply;
     }
-    if (!receive(until)) return std::nullopt;
+    if (!in_time) return std::nullopt;
   }
 }
 
@@ -250,7 +249,7 @@ void Client::no_answer() const {
 void Client::reopen(const Message& busy, bool& tried) {
   link::Busy by{};
   if (!link::read_payload(busy.payload, by)) return;
-  if (tried && by.host == introduction_.host && !took_) {
+  if (tried && is_gone(by.host) && !took_) {
     took_ = true;
     link::Hello taking = introduction_;
     taking.take = 1;
@@ -258,11 +257,10 @@ void Client::reopen(const Message& busy, bool& tried) {
     return;
   }
   if (tried) {
-    const std::string host(by.host.begin(), std::find(by.host.begin(), by.host.end(), '\0'));
     throw Refused(
         fmt::format("{}: busy: {} is uploading a program, and has had the line for {} s; "
                     "try again in a few seconds, or take it with rsc upload --take",
-                    transport_.name(), host, by.since_ms / 1000));
+                    transport_.name(), host_text(by.host), by.since_ms / 1000));
   }
   tried = true;
   (void)hello();
@@ -301,6 +299,7 @@ std::optional<link::HelloReply> Client::take_hello(std::uint8_t sequence,
   }
   if (!link::read_payload(answer->payload, reply)) return std::nullopt;
   orders_.learn(reply.pairing);
+  introduction_.take = 0;  // whoever takes the line from now on keeps it
   return reply;
 }
 
@@ -336,6 +335,15 @@ link::Kept Client::roll_back(const link::ProgramHash& to) {
 
 link::Status Client::stop() {
   return request<link::Status>(MessageType::stop, MessageType::status);
+}
+
+// Without a session, which a hello of this length does not open, so that no other host's is closed.
+void Client::expect_protocol(milliseconds within) {
+  const auto until = transport_.now() + within;
+  while (transport_.now() < until) {
+    const std::uint8_t sequence = send(MessageType::hello);
+    if (take_hello(sequence, std::min(until, transport_.now() + kRepeatAfter))) return;
+  }
 }
 
 link::Status Client::resume() {

@@ -45,6 +45,8 @@ public:
   // Puts all outputs into their safe state until resume(). The board does so when the frame arrives and replies later: without a
   // reply it may have stopped all the same.
   link::Status stop();
+  // Throws Failure (outside) if the board answers within that time, in another version of the protocol.
+  void expect_protocol(Milliseconds within);
   link::Status resume();
   // The session is filled in here.
   link::FeedResult feed(link::Feed feed);
@@ -73,8 +75,9 @@ public:
   // The next reply. Events, logs and faults that arrive meanwhile are queued for next_unasked().
   std::optional<Message> next_reply(Milliseconds timeout);
   // Handles the reply `busy`, once for each request: says hello, because the board may have restarted, or the host that had the
-  // line may be idle. If the board is still busy and the session is of this computer, it is a leftover, since only one rsc at a
-  // time uses a line (line_lock.hpp): it is taken over, once. Otherwise throws Failure (outside).
+  // line may be idle. If the board is still busy with a process of this computer that does not exist any more (host_name.hpp),
+  // the line is taken over, once: a user who interrupts an upload may start another at once. Otherwise throws Refused: the board
+  // gives the line free when nothing has come from its host for three seconds.
   void reopen(const Message& busy, bool& tried);
   // The next event, log line or fault record.
   std::optional<Message> next_unasked(Milliseconds timeout);
@@ -110,7 +113,7 @@ private:
   Orders orders_;
   link::Hello introduction_;
   link::SessionId session_ = introduction_.session;
-  bool took_ = false;  // took over a session of this computer
+  bool took_ = false;  // took over the session of a process that is gone
   link::FrameDecoder decoder_;
   std::optional<Transport::Clock::time_point> heard_;  // when the last valid frame came
   std::size_t stray_bytes_ = 0;                        // that came after it

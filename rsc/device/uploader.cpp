@@ -57,16 +57,15 @@ public:
     const auto start = client_.now();
     bool waits = false;  // for the answer to a `begin` alone
     while (!complete_ && (until == Until::there || next_ < image_.size())) {
-      expect_life(start, give_up);
       const std::optional<Message> reply = client_.next_reply(kWindowTimeout);
-      if (reply) {
-        take(*reply);
-      } else if (waits) {
+      if (reply) take(*reply);
+      if (complete_) return;
+      expect_life(start, give_up);
+      if (!reply && waits) {
         send_begin();  // no data, which would fill a line that nobody reads
         continue;
-      } else {
-        begin();  // resumes
       }
+      if (!reply) begin();  // resumes
       waits = !reply;
       fill_window(false);
     }

@@ -351,6 +351,19 @@ TEST_CASE("orders to a board that falls silent end soon, and say that they may h
   }
 }
 
+TEST_CASE("who interrupts an upload may start another one at once") {
+  Device device;
+  const std::string file = device.write("long.rsl", long_program());
+  const std::size_t heard = device.bridge.bytes_heard();
+  test::Running first({"upload", file, "--anyway", "--port", device.port});
+  while (device.bridge.bytes_heard() < heard + 600)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  (void)first.end(SIGINT);
+  const Outcome outcome = device.run({"upload", device.program});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+}
+
 TEST_CASE("a line that is closed in mid-upload: what runs, and what to do") {
   Device device;
   REQUIRE(device.run({"upload", device.program}).exit == 0);
