@@ -24,4 +24,17 @@ private:
   Exit exit_;
 };
 
+// The robot on the line has answered, and refuses. Repeating it is of no use; the line is in order.
+class Refused : public Failure {
+public:
+  explicit Refused(const std::string& message) : Failure(Exit::outside, message) {}
+};
+
+// The message with one more sentence.
+[[nodiscard]] inline std::string followed_by(const std::string& message,
+                                             const std::string& sentence) {
+  const bool ends = message.ends_with('?') || message.ends_with('.');
+  return message + (ends ? " " : ". ") + sentence;
+}
+
 }  // namespace robosync::tool

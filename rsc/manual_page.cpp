@@ -50,7 +50,8 @@ std::string manual_page(const std::vector<VerbUsage>& verbs) {
   }
   return text +
          ".SH EXIT STATUS\n.TP\n0\nfine\n.TP\n1\nthe program, its configuration or a test is "
-         "wrong\n.TP\n2\nwrong usage\n.TP\n3\na file or a device is in trouble\n";
+         "wrong\n.TP\n2\nwrong usage\n.TP\n3\na file or a device is in trouble, or the robot "
+         "refuses the program\n";
 }
 
 }  // namespace robosync::tool

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "rsc/device/host_name.hpp"
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
@@ -20,10 +21,15 @@ using std::chrono::milliseconds;
 
 // A reply takes at most 45 ms on the wire; the board verifies an image in a few.
 constexpr milliseconds kRepeatAfter{250};
-// … but an order's signature may take it half a second.
+// … but an order's signature may take it half a second, in emulation one and a half. Meanwhile it answers nothing.
 constexpr milliseconds kRepeatOrderAfter{1500};
+constexpr milliseconds kChecksFor{2500};
 // Bytes that arrived while this machine was busy are still read after the timeout, but not for longer than this.
-constexpr milliseconds kHearsOut{1000};
+constexpr milliseconds kHearsOut{300};
+// A board from which a frame has come within this time before the failure is there.
+constexpr milliseconds kThere{1000};
+constexpr std::size_t kNoise = 4;            // bytes; fewer come when a plug is pulled
+constexpr std::size_t kMostImage = 1 << 16;  // offsets have 16 bits
 constexpr milliseconds kStarts{20};
 constexpr std::size_t kMaxKept = 4096;  // unsolicited messages not yet fetched
 
@@ -31,15 +37,12 @@ bool is_unasked(MessageType type) {
   return type == MessageType::event || type == MessageType::log || type == MessageType::fault;
 }
 
-// This computer's name, which the board tells another host while it is busy.
 link::Hello introduction(bool take) {
   link::Hello hello{};
   std::random_device random;
   hello.session = std::max(random(), 1U);
   hello.take = static_cast<std::uint8_t>(take);
-  if (gethostname(hello.host.data(), hello.host.size()) != 0 || hello.host.front() == '\0')
-    hello.host.front() = '?';
-  hello.host.back() = '\0';
+  hello.host = host_name(getpid());
   return hello;
 }
 
@@ -72,7 +75,10 @@ bool Client::receive(Transport::Clock::time_point until) {
   std::array<std::byte, 512> bytes{};
   const std::size_t count = transport_.read(bytes, std::max(left, milliseconds(0)));
   for (const std::byte byte : std::span(bytes).first(count)) {
+    ++stray_bytes_;
     if (!decoder_.push(byte)) continue;
+    heard_ = transport_.now();
+    stray_bytes_ = 0;
     const link::Frame& frame = decoder_.frame();
     std::deque<Message>& queue = is_unasked(frame.type) ? unasked_ : replies_;
     if (queue.size() == kMaxKept) queue.pop_front();
@@ -95,16 +101,17 @@ std::optional<Message> Client::next_unasked(milliseconds timeout) {
   return pop(unasked_);
 }
 
-// Late replies to earlier requests are dropped. `busy` or a denial may come instead of the reply.
+// Late replies to earlier requests are dropped. `busy` or a denial may come instead of the reply. What has arrived is read even
+// after the time, in which this process may have been stopped.
 std::optional<Message> Client::reply_to(std::uint8_t sequence, MessageType type,
                                         Transport::Clock::time_point until) {
-  while (true) {
+  for (bool in_time = true;; in_time = receive(until)) {
     while (std::optional<Message> reply = pop(replies_)) {
       const bool fits = reply->type == type || reply->type == MessageType::authority ||  // denied
                         reply->type == MessageType::busy;
       if (fits && reply->sequence == sequence) return reply;
     }
-    if (!receive(until)) return std::nullopt;
+    if (!in_time) return std::nullopt;
   }
 }
 
@@ -130,16 +137,18 @@ Reply Client::request(MessageType type, MessageType reply_type,
 // Signed or unsigned, as the board wants: otherwise it denies the order and says how.
 template <typename Reply>
 Reply Client::order(MessageType type, MessageType reply_type, std::span<const std::byte> payload) {
-  const auto give_up = transport_.now() + timeout_ + 2 * kRepeatOrderAfter;
+  const auto start = transport_.now();
+  auto quiet_since = start;
   bool reopened = false;
-  while (transport_.now() < give_up) {
+  while (transport_.now() < limit_of_order(start) && silent_for(quiet_since) < kChecksFor) {
     if (orders_.are_signed() && !orders_.know_how()) orders_.learn(authority());
-    const bool is_signed = orders_.are_signed();
-    const std::uint8_t sequence = is_signed
-                                      ? send(MessageType::signed_order, orders_.sign(type, payload))
-                                      : send(type, payload);
-    const auto until = transport_.now() + (is_signed ? kRepeatOrderAfter : kRepeatAfter);
-    const std::optional<Message> answer = reply_to(sequence, reply_type, std::min(give_up, until));
+    const auto give_up = limit_of_order(start);
+    const auto soon = std::min(give_up, transport_.now() + kRepeatAfter);
+    const std::optional<Message> answer =
+        orders_.are_signed()
+            ? reply_to_signed(send(MessageType::signed_order, orders_.sign(type, payload)),
+                              reply_type, quiet_since, give_up)
+            : reply_to(send(type, payload), reply_type, soon);
     if (answer && answer->type == MessageType::busy) {
       reopen(*answer, reopened);
       continue;
@@ -148,24 +157,56 @@ Reply Client::order(MessageType type, MessageType reply_type, std::span<const st
     link::Authority authority{};
     if (answer && answer->type == reply_type && link::read_payload(answer->payload, reply))
       return reply;
-    if (answer && link::read_payload(answer->payload, authority)) heed(authority, give_up);
+    if (!answer || !link::read_payload(answer->payload, authority)) continue;
+    heed(authority, give_up);  // may wait
+    quiet_since = transport_.now();
   }
-  no_answer();
+  unanswered_order(type);
+}
+
+// A signed order is repeated late, since each one costs the board a check, so it has more time.
+Transport::Clock::time_point Client::limit_of_order(Transport::Clock::time_point start) const {
+  return start + timeout_ + (orders_.are_signed() ? 2 * kRepeatOrderAfter : milliseconds(0));
+}
+
+// Meanwhile asks for what costs the board nothing: if no answer to that comes either, for longer than a check takes, the line
+// is dead.
+std::optional<Message> Client::reply_to_signed(std::uint8_t sequence, MessageType type,
+                                               Transport::Clock::time_point quiet_since,
+                                               Transport::Clock::time_point give_up) {
+  const auto until = std::min(give_up, transport_.now() + kRepeatOrderAfter);
+  while (transport_.now() < until && silent_for(quiet_since) < kChecksFor) {
+    const auto soon = std::min(until, transport_.now() + kRepeatAfter);
+    if (auto reply = reply_to(sequence, type, soon)) return reply;
+    (void)send(MessageType::get_authority);
+  }
+  return std::nullopt;
+}
+
+// Without its reply nobody knows whether the order arrived. What `begin` orders is harmless.
+void Client::unanswered_order(MessageType type) const {
+  if (type == MessageType::begin) no_answer();
+  try {
+    no_answer();
+  } catch (const Failure& failure) {
+    throw Failure(failure.exit(),
+                  followed_by(failure.what(),
+                              "It may have done it all the same: `rsc info` shows its state"));
+  }
 }
 
 // Throws Failure if repeating the order before `give_up` is of no use.
 void Client::heed(const link::Authority& authority, Transport::Clock::time_point give_up) {
   orders_.learn(authority);
-  if (const std::string why = denial_text(authority); !why.empty())
-    throw Failure(Exit::outside, why);
+  if (const std::string why = denial_text(authority); !why.empty()) throw Refused(why);
   if (authority.denial == link::Denial::starting) wait(kStarts);
   if (authority.denial != link::Denial::too_soon) return;
   const milliseconds left(authority.wait_ms);
   if (transport_.now() + left >= give_up)
-    throw Failure(Exit::outside,
-                  "somebody has tried to sign orders without the owner's key: the robot ignores "
-                  "signed orders for " +
-                      std::to_string(left.count() / 1000 + 1) + " s; try again then");
+    throw Refused(
+        "somebody has tried to sign orders without the owner's key: the robot ignores "
+        "signed orders for " +
+        std::to_string(left.count() / 1000 + 1) + " s; try again then");
   wait(left);
 }
 
@@ -175,16 +216,40 @@ void Client::wait(milliseconds time) {
   }
 }
 
+milliseconds Client::silent_for(Transport::Clock::time_point start) const {
+  const auto since = std::max(start, heard_.value_or(start));
+  return std::chrono::duration_cast<milliseconds>(transport_.now() - since);
+}
+
 void Client::no_answer() const {
-  throw Failure(Exit::outside, transport_.name() +
-                                   ": the board does not answer: is it on, does it run the "
-                                   "RoboSync firmware, and is no other program using the port?");
+  const std::string name = transport_.name();
+  if (stray_bytes_ >= kNoise)
+    throw Failure(
+        Exit::outside,
+        fmt::format("something on {} sends bytes, but not RoboSync's frames ({} bytes): is it the "
+                    "right port, does the board run the RoboSync firmware, and does it send at "
+                    "115,200 baud?",
+                    name, stray_bytes_));
+  if (!heard_)
+    throw Failure(Exit::outside,
+                  name +
+                      ": the board does not answer: is it on, does it run the RoboSync firmware, "
+                      "and is no other program using the port?");
+  if (transport_.now() - *heard_ < kThere)
+    throw Failure(Exit::outside,
+                  name +
+                      ": the board sends, but does not answer this: is the line very bad, or is "
+                      "its firmware of another release than this rsc?");
+  throw Failure(Exit::outside,
+                name +
+                    ": the board has fallen silent after it had answered: is it still on, and is "
+                    "its cable still plugged in?");
 }
 
 void Client::reopen(const Message& busy, bool& tried) {
   link::Busy by{};
   if (!link::read_payload(busy.payload, by)) return;
-  if (tried && by.host == introduction_.host && !took_) {
+  if (tried && is_gone(by.host) && !took_) {
     took_ = true;
     link::Hello taking = introduction_;
     taking.take = 1;
@@ -192,11 +257,10 @@ void Client::reopen(const Message& busy, bool& tried) {
     return;
   }
   if (tried) {
-    const std::string host(by.host.begin(), std::find(by.host.begin(), by.host.end(), '\0'));
-    throw Failure(Exit::outside,
-                  fmt::format("{}: busy: {} is uploading a program, and has had the line for {} s; "
-                              "try again in a few seconds, or take it with rsc upload --take",
-                              transport_.name(), host, by.since_ms / 1000));
+    throw Refused(
+        fmt::format("{}: busy: {} is uploading a program, and has had the line for {} s; "
+                    "try again in a few seconds, or take it with rsc upload --take",
+                    transport_.name(), host_text(by.host), by.since_ms / 1000));
   }
   tried = true;
   (void)hello();
@@ -235,6 +299,7 @@ std::optional<link::HelloReply> Client::take_hello(std::uint8_t sequence,
   }
   if (!link::read_payload(answer->payload, reply)) return std::nullopt;
   orders_.learn(reply.pairing);
+  introduction_.take = 0;  // whoever takes the line from now on keeps it
   return reply;
 }
 
@@ -270,6 +335,15 @@ link::Kept Client::roll_back(const link::ProgramHash& to) {
 
 link::Status Client::stop() {
   return request<link::Status>(MessageType::stop, MessageType::status);
+}
+
+// Without a session, which a hello of this length does not open, so that no other host's is closed.
+void Client::expect_protocol(milliseconds within) {
+  const auto until = transport_.now() + within;
+  while (transport_.now() < until) {
+    const std::uint8_t sequence = send(MessageType::hello);
+    if (take_hello(sequence, std::min(until, transport_.now() + kRepeatAfter))) return;
+  }
 }
 
 link::Status Client::resume() {
@@ -347,9 +421,9 @@ std::vector<link::ThreadInfo> Client::threads() {
 }
 
 std::vector<std::byte> Client::running_image() {
-  const auto give_up = transport_.now() + 4 * timeout_;
+  auto give_up = transport_.now() + timeout_;
   std::vector<std::byte> image;
-  while (transport_.now() < give_up) {
+  while (transport_.now() < give_up && image.size() <= kMostImage) {
     const link::ReadImage wish{static_cast<std::uint32_t>(image.size())};
     const std::uint8_t sequence = send(MessageType::read_image, link::wire_bytes(wish));
     const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
@@ -361,6 +435,7 @@ std::vector<std::byte> Client::running_image() {
     const auto bytes = std::span(answer->payload).subspan(sizeof head);
     if (bytes.empty()) return image;
     image.insert(image.end(), bytes.begin(), bytes.end());
+    give_up = transport_.now() + timeout_;
   }
   no_answer();
 }

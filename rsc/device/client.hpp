@@ -31,7 +31,8 @@ public:
   explicit Client(Transport& transport, Milliseconds timeout = Milliseconds(2000),
                   bool take = false);
 
-  // These repeat the request until its reply comes, and throw Failure (outside) after the timeout.
+  // These repeat the request until its reply comes, and throw Failure (outside) after the timeout. What needs many replies fails
+  // when none has come for that long.
   link::HelloReply hello();  // opens a session; requests that need one do so themselves
   link::Status status();
   link::Fault last_fault();  // the latest one that the board has kept; no thread: none
@@ -44,6 +45,8 @@ public:
   // Puts all outputs into their safe state until resume(). The board does so when the frame arrives and replies later: without a
   // reply it may have stopped all the same.
   link::Status stop();
+  // Throws Failure (outside) if the board answers within that time, in another version of the protocol.
+  void expect_protocol(Milliseconds within);
   link::Status resume();
   // The session is filled in here.
   link::FeedResult feed(link::Feed feed);
@@ -72,13 +75,18 @@ public:
   // The next reply. Events, logs and faults that arrive meanwhile are queued for next_unasked().
   std::optional<Message> next_reply(Milliseconds timeout);
   // Handles the reply `busy`, once for each request: says hello, because the board may have restarted, or the host that had the
-  // line may be idle. If the board is still busy and the session is of this computer, it is a leftover, since only one rsc at a
-  // time uses a line (line_lock.hpp): it is taken over, once. Otherwise throws Failure (outside).
+  // line may be idle. If the board is still busy with a process of this computer that does not exist any more (host_name.hpp),
+  // the line is taken over, once: a user who interrupts an upload may start another at once. Otherwise throws Refused: the board
+  // gives the line free when nothing has come from its host for three seconds.
   void reopen(const Message& busy, bool& tried);
   // The next event, log line or fault record.
   std::optional<Message> next_unasked(Milliseconds timeout);
 
   Transport::Clock::time_point now() const { return transport_.now(); }
+  // How long no valid frame has come, counted from `start` at the earliest.
+  Milliseconds silent_for(Transport::Clock::time_point start) const;
+  // Throws Failure (outside), which says what has come instead of an answer: nothing, or what.
+  [[noreturn]] void no_answer() const;
 
 private:
   template <typename Reply>
@@ -94,15 +102,21 @@ private:
   bool receive(Transport::Clock::time_point until);
   std::optional<link::HelloReply> take_hello(std::uint8_t sequence,
                                              Transport::Clock::time_point until);
-  [[noreturn]] void no_answer() const;
+  std::optional<Message> reply_to_signed(std::uint8_t sequence, link::MessageType type,
+                                         Transport::Clock::time_point quiet_since,
+                                         Transport::Clock::time_point give_up);
+  Transport::Clock::time_point limit_of_order(Transport::Clock::time_point start) const;
+  [[noreturn]] void unanswered_order(link::MessageType type) const;
 
   Transport& transport_;
   Milliseconds timeout_;
   Orders orders_;
   link::Hello introduction_;
   link::SessionId session_ = introduction_.session;
-  bool took_ = false;  // took over a session of this computer
+  bool took_ = false;  // took over the session of a process that is gone
   link::FrameDecoder decoder_;
+  std::optional<Transport::Clock::time_point> heard_;  // when the last valid frame came
+  std::size_t stray_bytes_ = 0;                        // that came after it
   std::uint8_t sequence_ = 0;
   std::deque<Message> replies_;
   std::deque<Message> unasked_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "rsc/device/keeping.hpp"
@@ -68,8 +69,16 @@ Uploaded upload_to(const std::string& port, const Program& program, const SendOp
   Uploaded uploaded;
   uploaded.result = upload_program(session, program, how);
   know_image(port, without_source_lines(program));
-  uploaded.silent = silent_after_start(session.client, program.image());
-  uploaded.kept = options.trial ? after_trial(session.client) : session.client.kept();
+  try {
+    uploaded.silent = silent_after_start(session.client, program.image());
+    uploaded.kept = options.trial ? after_trial(session.client) : session.client.kept();
+  } catch (const Failure& failure) {
+    throw Failure(failure.exit(),
+                  followed_by(failure.what(),
+                              fmt::format("The upload was done: program {} has started; `rsc info` "
+                                          "shows whether the robot keeps it",
+                                          hash_of(program))));
+  }
   return uploaded;
 }
 

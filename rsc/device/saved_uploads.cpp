@@ -1,5 +1,4 @@
-// See saved_uploads.hpp. Errors in a program are printed, and the previous one
-// keeps running.
+// See saved_uploads.hpp. Errors in a program and the robot's refusals are printed, and the previous one keeps running.
 #include "rsc/device/saved_uploads.hpp"
 
 #include <iostream>
@@ -12,12 +11,15 @@ bool SavedUploads::work(Session* session) {
   if (session == nullptr || (!is_first_ && !saved_.changed())) return true;
   is_first_ = false;
   saved_.look_at(files_of_program(file_, how_));
+  const auto tell = [](const Failure& failure) { std::cerr << "rsc: " << failure.what() << '\n'; };
   try {
     programs_.push_back(load_program(file_, how_));
     upload_program(*session, programs_.back(), {});
+  } catch (const Refused& refusal) {
+    tell(refusal);
   } catch (const Failure& failure) {
     if (failure.exit() != Exit::program) throw;
-    std::cerr << "rsc: " << failure.what() << '\n';
+    tell(failure);
   }
   return true;
 }

@@ -28,15 +28,32 @@ std::string_view word(const std::array<std::string_view, N>& words, std::size_t 
   return number < N ? words[number] : "?";
 }
 
-// In percent. A new thread, or one of another program, has no share yet.
-std::optional<double> share(const link::ThreadInfo& thread, ThreadList before) {
-  const auto earlier = std::find_if(before.begin(), before.end(), [&](const auto& other) {
-    return other.name == thread.name && other.category == thread.category &&
-           other.activations <= thread.activations;
-  });
-  if (earlier == before.end() || earlier->clock == thread.clock) return std::nullopt;
-  const double ran = thread.run_time - earlier->run_time;
-  return 100 * ran / (thread.clock - earlier->clock);
+bool is_like(const link::ThreadInfo& one, const link::ThreadInfo& other) {
+  return one.name == other.name && one.category == other.category &&
+         one.base_priority == other.base_priority;
+}
+
+// Several threads may have one name, such as the rules outside behaviours: the n-th now is the n-th before. The board lists them
+// by rank, which may have changed: see share(). Null: it was not there.
+const link::ThreadInfo* earlier_of(const link::ThreadInfo& thread, ThreadList now,
+                                   ThreadList before) {
+  auto nth =
+      std::count_if(now.data(), &thread, [&](const auto& one) { return is_like(one, thread); });
+  for (const link::ThreadInfo& one : before)
+    if (is_like(one, thread) && nth-- == 0) return &one;
+  return nullptr;
+}
+
+// In percent, of a thread in `now`. A new thread, or one of another program, has no share yet. Nor has one whose numbers do not
+// fit together: they are those of different threads.
+std::optional<double> share(const link::ThreadInfo& thread, ThreadList now, ThreadList before) {
+  const link::ThreadInfo* const earlier = earlier_of(thread, now, before);
+  if (earlier == nullptr || earlier->activations > thread.activations) return std::nullopt;
+  const std::uint32_t ran = thread.run_time - earlier->run_time;
+  const std::uint32_t passed = thread.clock - earlier->clock;
+  // The last turn before a list may be counted in the next one.
+  if (passed == 0 || ran > passed + passed / 8.0) return std::nullopt;
+  return std::min(100.0 * ran / passed, 100.0);
 }
 
 // "50", and "50+7" while it is raised by 7.
@@ -46,9 +63,9 @@ std::string priority(const link::ThreadInfo& thread) {
                      : fmt::format("{}{:+}", thread.base_priority, raised);
 }
 
-std::string share_column(const link::ThreadInfo& thread, ThreadList before) {
+std::string share_column(const link::ThreadInfo& thread, ThreadList now, ThreadList before) {
   if (before.empty()) return {};
-  const auto percent = share(thread, before);
+  const auto percent = share(thread, now, before);
   return percent ? fmt::format(" {:>5.1f} %", *percent) : fmt::format(" {:>7}", "-");
 }
 
@@ -62,8 +79,9 @@ std::string threads_table(ThreadList now, ThreadList before) {
   for (const link::ThreadInfo& thread : now) {
     text += fmt::format("{:>4}  {:<16}  {:<10}  {:>8}{}  {:<8} {:>10}/{:<6}  {:>9}  {:>6}\n",
                         thread.rank, text_of(thread.name), word(kCategories, thread.category),
-                        priority(thread), share_column(thread, before), word(kStates, thread.state),
-                        thread.stack_used, thread.stack_bytes, thread.activations, thread.missed);
+                        priority(thread), share_column(thread, now, before),
+                        word(kStates, thread.state), thread.stack_used, thread.stack_bytes,
+                        thread.activations, thread.missed);
   }
   return text;
 }
@@ -71,7 +89,7 @@ std::string threads_table(ThreadList now, ThreadList before) {
 std::optional<double> load_of(ThreadList now, ThreadList before) {
   std::optional<double> load;
   for (const link::ThreadInfo& thread : now)
-    if (const auto percent = share(thread, before)) load = load.value_or(0) + *percent;
+    if (const auto percent = share(thread, now, before)) load = load.value_or(0) + *percent;
   return load;
 }
 
@@ -88,7 +106,7 @@ Json threads_json(ThreadList now, ThreadList before) {
                     {"stack_used", thread.stack_used},
                     {"activations", thread.activations},
                     {"missed_deadlines", thread.missed}});
-    if (const auto percent = share(thread, before)) list.back()["cpu_percent"] = *percent;
+    if (const auto percent = share(thread, now, before)) list.back()["cpu_percent"] = *percent;
   }
   return list;
 }

@@ -11,7 +11,7 @@
 namespace robosync::tool {
 
 // How long a line may accept no bytes before it counts as lost.
-inline constexpr int kWriteTimeoutMs = 5000;
+inline constexpr int kWriteTimeoutMs = 2000;
 
 class Transport {
 public:

@@ -1,5 +1,5 @@
 // Go-back-N over the link: data frames up to the board's window are in flight, and every reply names the next offset wanted. The
-// line is not trusted. Promises to end: with the board's answer, or by its timeout.
+// line is not trusted. Promises to end: with the board's answer, soon after the board has fallen silent, or by its timeout.
 #include "rsc/device/uploader.hpp"
 
 #include <algorithm>
@@ -29,6 +29,8 @@ using std::chrono::milliseconds;
 
 // A window of data takes 45 ms on the wire.
 constexpr milliseconds kWindowTimeout{200};
+// A board from which no frame has come for so long is gone: ten windows in a row are not lost.
+constexpr milliseconds kSilence{2300};
 constexpr std::size_t kBeside = link::kFrameOverhead + 2;  // of a frame, besides its payload
 // Frames shorter than this are not sent to fill a window.
 constexpr std::size_t kWorthAFrame = 64;
@@ -45,31 +47,26 @@ public:
   // The first window follows the `begin` request without waiting: if the board wants something else, its reply says so.
   // `before`: bytes of another request in flight.
   void begin(std::size_t before = 0) {
-    under_way_.clear();
-    bytes_under_way_ = before;
-    next_ = wanted_;
-    begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(request()));
-    note_sent(begin_sequence_, sizeof(link::Begin));
+    send_begin(before);
     fill_window(true);
     bytes_under_way_ -= before;
   }
 
   // Returns when everything is sent, or when the board has it. After begin().
   void run(Until until, Transport::Clock::time_point give_up) {
+    const auto start = client_.now();
+    bool waits = false;  // for the answer to a `begin` alone
     while (!complete_ && (until == Until::there || next_ < image_.size())) {
-      if (client_.now() >= give_up) {
-        throw Failure(
-            Exit::outside,
-            fmt::format(
-                "the transfer timed out after {} of {} bytes; the old program keeps running",
-                wanted_, image_.size()));
-      }
       const std::optional<Message> reply = client_.next_reply(kWindowTimeout);
-      if (!reply) {
-        begin();  // resumes
-      } else {
-        take(*reply);
+      if (reply) take(*reply);
+      if (complete_) return;
+      expect_life(start, give_up);
+      if (!reply && waits) {
+        send_begin();  // no data, which would fill a line that nobody reads
+        continue;
       }
+      if (!reply) begin();  // resumes
+      waits = !reply;
       fill_window(false);
     }
   }
@@ -97,6 +94,21 @@ public:
   std::size_t bytes_sent() const { return bytes_sent_; }
 
 private:
+  void send_begin(std::size_t before = 0) {
+    under_way_.clear();
+    bytes_under_way_ = before;
+    next_ = wanted_;
+    begin_sequence_ = client_.send(MessageType::begin, link::wire_bytes(request()));
+    note_sent(begin_sequence_, sizeof(link::Begin));
+  }
+
+  void expect_life(Transport::Clock::time_point start, Transport::Clock::time_point give_up) const {
+    if (client_.silent_for(start) >= kSilence) client_.no_answer();
+    if (client_.now() >= give_up)
+      throw Failure(Exit::outside, fmt::format("the transfer timed out after {} of {} bytes",
+                                               wanted_, image_.size()));
+  }
+
   struct UnderWay {
     std::uint8_t sequence;
     std::size_t end;    // the next offset wanted, if it is accepted
@@ -178,10 +190,10 @@ private:
 
   void take_begin(const link::TransferStatus& status, std::size_t assumed) {
     if (status.state == link::TransferState::too_large) {
-      throw Failure(Exit::program,
-                    fmt::format("next to the running program the board has {} bytes free, and the "
-                                "image has {}: rsc upload --replace ends the running program first",
-                                status.next_offset, image_.size()));
+      throw Refused(
+          fmt::format("next to the running program the board has {} bytes free, and the "
+                      "image has {}: rsc upload --replace ends the running program first",
+                      status.next_offset, image_.size()));
     }
     if (status.state == link::TransferState::other_base) {
       forget_base();
@@ -228,16 +240,43 @@ bool is_damaged(const link::ActivateResult& result) {
   return refusal == vm::Refusal::bad_crc || refusal == vm::Refusal::wrong_name;
 }
 
+// How far an upload has come: what the robot runs if the line fails now.
+struct Course {
+  std::string old = "the old program keeps running";
+  bool starts =
+      false;  // the new program was to start, and the robot has not said that it did or did not
+
+  // The failure, with what runs and what to do.
+  Failure explain(const Failure& failure, const link::ProgramHash& hash) const {
+    const std::string news =
+        starts ? fmt::format(
+                     "Program {} may run: the robot was told to start it, and its answer "
+                     "is missing; `rsc info` shows what runs",
+                     text_of(hash))
+               : fmt::format(
+                     "The new program was not started: {}; upload again when the line works", old);
+    return {failure.exit(), followed_by(failure.what(), news)};
+  }
+};
+
+link::ActivateResult activate(Client& client, const Transfer& transfer, Course& course) {
+  course.starts = true;
+  const link::ActivateResult result = client.activate(transfer.wish());
+  course.starts = false;
+  return result;
+}
+
 // Finishes a started transfer. The activation request follows the last piece without waiting; the board reports what was lost
 // before it. A board that was reset, or that started another host's transfer, has nothing to activate: then the rest is sent
 // again. A damaged image is sent again once.
 UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byte> image,
-                    const UploadOptions& options, Transport::Clock::time_point start) {
+                    const UploadOptions& options, Transport::Clock::time_point start,
+                    Course& course) {
   const auto give_up = start + options.timeout.value_or(patience(image.size()));
   UploadResult result;
   result.bytes = image.size();
   transfer.run(Until::sent, give_up);
-  result.activation = client.activate(transfer.wish());
+  result.activation = activate(client, transfer, course);
   bool repeats = true;
   while (client.now() < give_up) {
     const bool nothing = result.activation.refusal == link::kNothingToActivate;
@@ -246,12 +285,24 @@ UploadResult finish(Client& client, Transfer& transfer, std::span<const std::byt
     transfer.order();
     transfer.begin();
     transfer.run(Until::there, give_up);
-    result.activation = client.activate(transfer.wish());
+    result.activation = activate(client, transfer, course);
   }
   result.frames_sent = transfer.frames_sent();
   result.bytes_sent = transfer.bytes_sent();
   result.time = std::chrono::duration_cast<std::chrono::microseconds>(client.now() - start);
   return result;
+}
+
+// A failure of the line says what runs; what the robot refuses is complete.
+template <typename Work>
+UploadResult explained(const Course& course, const link::ProgramHash& hash, const Work& work) {
+  try {
+    return work();
+  } catch (const Refused&) {
+    throw;
+  } catch (const Failure& failure) {
+    throw course.explain(failure, hash);
+  }
 }
 
 void check_driver(const link::HelloReply& board, vm::DriverId id, std::string_view what,
@@ -311,10 +362,13 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
 UploadResult upload(Client& client, const link::HelloReply& /*hello*/,
                     std::span<const std::byte> image, const UploadOptions& options) {
   const auto start = client.now();
-  Transfer transfer(client, image, options);
-  transfer.order();
-  transfer.begin();
-  return finish(client, transfer, image, options, start);
+  Course course;
+  return explained(course, vm::stated_name(image), [&] {
+    Transfer transfer(client, image, options);
+    transfer.order();
+    transfer.begin();
+    return finish(client, transfer, image, options, start, course);
+  });
 }
 
 namespace {
@@ -322,8 +376,7 @@ namespace {
 void check_board(const Session& session, const Program& program) {
   const std::vector<std::string> found = obstacles(session.board, program.image());
   if (found.empty()) return;
-  throw Failure(Exit::program,
-                fmt::format("the board ({}, firmware {}) cannot run this program:\n  {}",
+  throw Refused(fmt::format("the board ({}, firmware {}) cannot run this program:\n  {}",
                             text_of(session.board.board), text_of(session.board.firmware),
                             fmt::join(found, "\n  ")));
 }
@@ -331,13 +384,12 @@ void check_board(const Session& session, const Program& program) {
 void check_result(const link::ActivateResult& result, const Program& program) {
   if (result.running != 0) return;
   if (result.refusal == link::kNothingToActivate) {
-    throw Failure(Exit::outside, "the board lost the transfer again and again; is it being reset?");
+    throw Refused("the board lost the transfer again and again; is it being reset?");
   }
   const vm::Verdict verdict{static_cast<vm::Refusal>(result.refusal),
                             static_cast<vm::Section>(result.section), result.index};
   const std::uint16_t line = source_line(program.image(), verdict.section, verdict.index);
-  throw Failure(Exit::program,
-                fmt::format("the board refused the program: {}; the old one keeps running",
+  throw Refused(fmt::format("the board refused the program: {}; the old one keeps running",
                             describe_refusal(verdict, line)));
 }
 
@@ -354,23 +406,50 @@ void refuse_modules_in_files(const vm::Image& image) {
 
 }  // namespace
 
-UploadResult upload_program(Session& session, const Program& program,
-                            const UploadOptions& options) {
-  refuse_modules_in_files(program.image());
+namespace {
+
+// What certainly runs until the activation. A session that has been open for long may know an earlier program.
+std::string still_running(const link::HelloReply& board, bool is_news) {
+  if (!is_news) return "the old program keeps running";
+  if (board.running == 0) return "no program runs";
+  return fmt::format("program {} keeps running", text_of(board.program_hash));
+}
+
+void end_running(Session& session, Course& course) {
+  course.old = "the program before may have been ended (--replace)";
+  (void)session.client.clear(session.board.program_hash);
+  course.old = "no program runs, or the kept one in a few seconds";
+}
+
+UploadResult send(Session& session, const Program& program, std::span<const std::byte> image,
+                  const UploadOptions& options, Course& course) {
   Client& client = session.client;
-  const std::vector<std::byte> image = without_source_lines(program);
   const auto start = client.now();
+  const bool is_news = !session.greeted();
   Transfer transfer(client, image, options);
-  const bool at_once = !session.greeted() && !options.replace;
+  const bool at_once = is_news && !options.replace;
   if (at_once) transfer.begin(sizeof(link::Hello) + kBeside);
   session.greet();
+  course.old = still_running(session.board, is_news);
   check_board(session, program);
-  if (options.replace && session.board.running != 0) (void)client.clear(session.board.program_hash);
+  if (options.replace && session.board.running != 0) end_running(session, course);
   if (!options.base.empty() && vm::stated_name(options.base) != session.board.program_hash)
     transfer.forget_base();
   transfer.order();
   if (!at_once || client.signs()) transfer.begin();
-  const UploadResult result = finish(client, transfer, image, options, start);
+  return finish(client, transfer, image, options, start, course);
+}
+
+}  // namespace
+
+UploadResult upload_program(Session& session, const Program& program,
+                            const UploadOptions& options) {
+  refuse_modules_in_files(program.image());
+  const std::vector<std::byte> image = without_source_lines(program);
+  Course course;
+  const UploadResult result = explained(course, vm::stated_name(image), [&] {
+    return send(session, program, image, options, course);
+  });
   check_result(result.activation, program);
   return result;
 }

@@ -28,7 +28,8 @@ struct UploadOptions {
   std::span<const std::byte> base;     // what probably runs there: only the difference is sent
 };
 
-// The default time limit of an upload: ten times what the bytes take on the wire, plus some seconds for a busy board.
+// The time limit of an upload over a line that answers: ten times what the bytes take on the wire, plus some seconds for a busy
+// board. A board that falls silent ends it earlier.
 [[nodiscard]] std::chrono::milliseconds patience(std::size_t image_bytes);
 
 struct UploadResult {
@@ -44,12 +45,13 @@ struct UploadResult {
                                                  const vm::Image& image);
 
 // Transfers the image (its header names it) and activates it. `hello` is the board's answer. The result says whether the program
-// runs. Throws Failure: outside if the board does not answer in time, program if the image is too large for it.
+// runs. Throws Failure (outside) if the board does not answer in time, with what runs then, and Refused if the image is too large
+// for it.
 [[nodiscard]] UploadResult upload(Client& client, const link::HelloReply& hello,
                                   std::span<const std::byte> image, const UploadOptions& options);
 
 // Uploads `program` without its source lines, starting before the board has answered hello. Throws what upload() throws, and
-// Failure (program) if the board cannot run it or refuses it.
+// Refused if the board cannot run it or refuses it.
 UploadResult upload_program(Session& session, const Program& program, const UploadOptions& options);
 
 }  // namespace robosync::tool

@@ -21,6 +21,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLook{1000};  // for checks of losses and threads
 constexpr milliseconds kListen{50};  // before the viewers have their turn
 constexpr milliseconds kTryAgain{500};
+constexpr milliseconds kTolerance{3000};  // of a board's clock against this computer's
 
 }  // namespace
 
@@ -46,9 +47,7 @@ Watch::~Watch() {
 void Watch::begin() {
   learn_program();
   if (threads_) thread_list_ = session_->client.threads();
-  const link::Status status = session_->client.set_trace(true);
-  lost_ = status.lost_events;
-  uptime_us_ = status.uptime_us;
+  remember(session_->client.set_trace(true));
 }
 
 void Watch::learn_program() {
@@ -75,7 +74,6 @@ void Watch::learn_threads() {
 
 void Watch::introduce() {
   Past past(session_->client);
-  uptime_us_ = past.status.uptime_us;
   std::vector<OnBus> silent;
   if (names_.image != nullptr) silent = on_buses(image_, session_->client.devices());
   std::erase_if(silent, [](const OnBus& device) { return !device.silent; });
@@ -192,17 +190,37 @@ void Watch::tell_threads() {
   thread_list_ = now;
 }
 
+void Watch::remember(const link::Status& status) {
+  last_ = status;
+  last_at_ = std::chrono::system_clock::now();
+  last_at_steady_ = Clock::now();
+}
+
+// When this computer has slept, a board that restarted meanwhile may have been up for longer than at the last look. But then it
+// has not been up for all of the time that passed by the wall clock. A board in an emulator sleeps with this computer, and the
+// wall clock may be set: so the board may also have gone on as the steady clock did.
+bool Watch::has_restarted(const link::Status& status) const {
+  if (status.uptime_us < last_.uptime_us || status.activations < last_.activations ||
+      status.lost_events < last_.lost_events)
+    return true;
+  const std::chrono::duration<double> by_wall = std::chrono::system_clock::now() - last_at_;
+  const std::chrono::duration<double> by_steady = Clock::now() - last_at_steady_;
+  const std::chrono::duration<double> went_on =
+      std::chrono::microseconds(status.uptime_us - last_.uptime_us);
+  const auto tolerance = kTolerance + by_wall / 50;  // an emulator may be slow
+  return went_on + tolerance < by_wall && abs(went_on - by_steady) > tolerance;
+}
+
 // A restarted board has its trace off, so every status request switches it on again.
 void Watch::look(const link::Status& status) {
-  if (status.uptime_us < uptime_us_) {
+  if (has_restarted(status)) {
     missed("the board has restarted");
-    lost_ = 0;
     learn_program();
     introduce();
   } else {
     report_losses(status);
   }
-  uptime_us_ = status.uptime_us;
+  remember(status);
   for (Viewer* const viewer : viewers_)
     viewer->status(status);
 }
@@ -230,9 +248,8 @@ bool Watch::lend() {
 }
 
 void Watch::report_losses(const link::Status& status) {
-  const std::uint32_t now_lost = status.lost_events - lost_;
-  lost_ = status.lost_events;
-  if (now_lost == 0) return;
+  if (status.lost_events <= last_.lost_events) return;
+  const std::uint32_t now_lost = status.lost_events - last_.lost_events;
   missed(fmt::format("{} events did not fit on the line and are not shown", now_lost));
 }
 

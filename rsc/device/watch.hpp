@@ -46,6 +46,8 @@ private:
   void tell_event(const Message& message);
   void tell_threads();
   void look(const link::Status& status);
+  void remember(const link::Status& status);
+  bool has_restarted(const link::Status& status) const;
   bool lend();
   void lose(const std::string& why);
   void find_again();
@@ -60,10 +62,12 @@ private:
   std::vector<std::byte> image_bytes_;
   vm::Image image_;
   TraceNames names_;
-  std::uint32_t lost_ = 0;
-  std::uint64_t uptime_us_ = 0;  // of the board, at its last status
-  bool has_line_ = true;         // not lent to another rsc
-  std::string why_lost_;         // why the line is lost, while it is
+  // The board's last status, and when it came.
+  link::Status last_{};
+  std::chrono::system_clock::time_point last_at_;
+  Clock::time_point last_at_steady_;
+  bool has_line_ = true;  // not lent to another rsc
+  std::string why_lost_;  // why the line is lost, while it is
   std::optional<Clock::time_point> until_;
   Clock::time_point next_look_, next_try_;
 };

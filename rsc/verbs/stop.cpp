@@ -1,4 +1,5 @@
 // rsc stop --port P: all outputs go to their safe state and stay there, whatever is uploaded, until rsc resume.
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -13,16 +14,30 @@ namespace robosync::tool {
 
 namespace {
 
+constexpr std::chrono::milliseconds kAskOnce{300};
+
+// Firmware of another release may answer nothing else.
+std::string why_unanswered(Client& client, const Failure& failure) {
+  try {
+    client.expect_protocol(kAskOnce);
+  } catch (const Failure& other) {
+    return other.what();
+  }
+  return failure.what();
+}
+
 // Without a hello first, which a busy board may answer late; and while another rsc, such as a monitor, has the line.
 void stop_board(const std::string& port) {
   const std::unique_ptr<Transport> transport = open_port(port, Sharing::at_once);
+  Client client(*transport);
   try {
-    Client(*transport).stop();
+    client.stop();
   } catch (const Failure& failure) {
     throw Failure(failure.exit(),
-                  std::string(failure.what()) +
-                      " It may have stopped all the same: a busy board stops first and answers "
-                      "later, and another rsc on this line may have taken the answer");
+                  followed_by(why_unanswered(client, failure),
+                              "It may have stopped all the same: a busy board stops first and "
+                              "answers later, and another rsc on this line may have taken the "
+                              "answer"));
   }
 }
 

@@ -75,7 +75,7 @@ void add_upload(Options& options) {
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_duration_option(options, "--timeout", asked->timeout,
-                      "give up after this time (10s, longer for a large image)");
+                      "give up after this time, even if the board still answers");
   add_duration_option(options, "--trial", asked->trial,
                       "wait until it has run this long, and say whether the robot keeps it");
   options.flag("--no-confirm", asked->no_confirm,

@@ -96,16 +96,16 @@ class Large(RobotTest):
         self.assertEqual(lines.count('"event":"fire"'), 1)
 
     def test_what_is_too_large_is_refused_with_both_numbers(self):
-        """rsc refuses a program before it sends it; an image is refused in the same way by the simulator and for the board."""
+        """rsc refuses a program before it sends it; an image is refused in the same way by the simulator, and on the line (3)."""
         source, robot = self.write_large(1000, 60, 32)
         image = self.compile_large(1000, 60, 32)
         port = ["--port", self.board.port]
         told = set()
-        for arguments in (["check", source, "--config", robot], ["upload", source, "--config", robot, *port],
-                          ["run", image], ["upload", image, "--anyway", *port]):
+        for code, arguments in ((1, ["check", source, "--config", robot]), (1, ["upload", source, "--config", robot, *port]),
+                                (1, ["run", image]), (3, ["upload", image, "--anyway", *port])):
             with self.subTest(arguments=arguments[:2]):
                 done = rsc.call(*arguments)
-                self.assertEqual(done.returncode, 1)
+                self.assertEqual(done.returncode, code)
                 told |= set(re.findall(r"the program needs \d+ bytes of memory, the board has \d+ for programs; "
                                        r"most of it is for \w+", done.stderr))
         self.assertEqual(len(told), 1, told)

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import rsc
-from board import NAME
+from board import NAME, Board
 from support import PROGRAMS, RobotTest
 
 PATIENCE = 20
@@ -94,6 +94,22 @@ class Monitor(RobotTest):
         self.wait_for("PAUSED")
         self.terminal.type("q")
         self.has_ended(0)
+
+    def test_b_goes_back_to_the_program_before(self):
+        self.board.stop()
+        self.board = Board(self.elf, icount=self.icount, store=self.folder / "store")
+        self.addCleanup(self.board.stop)
+        hashes = []
+        for name in ("paper", "priorities"):
+            self.upload(self.compile(PROGRAMS / f"{name}.rsl"), "--trial", "100ms")
+            hashes.append(rsc.info(self.board.port)["board"]["program"]["hash"])
+        self.start()
+        self.wait_for("BEHAVIOURS")
+        self.terminal.type("b")
+        self.wait_for(f"program {hashes[0]}")
+        self.terminal.type("q")
+        self.has_ended(0)
+        self.assertEqual(rsc.info(self.board.port)["board"]["program"]["hash"], hashes[0])
 
     def test_it_leaves_the_terminal_as_it_was(self):
         for ending, code in ((signal.SIGTERM, 0), (signal.SIGINT, 0), (signal.SIGQUIT, 0),

@@ -1,6 +1,7 @@
 """Uploading while the robot runs: nothing stops, nothing restarts, safety never pauses."""
 
 import json
+import time
 import unittest
 
 import periods
@@ -80,9 +81,26 @@ class Upload(RobotTest):
         config = self.folder / "other.json"
         config.write_text(json.dumps({**json.loads(CONFIG.read_text()), "board": other}))
         done = rsc.call("upload", PROGRAMS / "paper.rsl", "--config", config, "--port", self.board.port)
-        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.returncode, 3)
         self.assertIn(f"it is for {other}, and this is {NAME}", done.stderr)
         self.assertEqual(self.status()["activations"], 0)
+
+    def test_a_suspended_board_ends_rsc_soon_and_goes_on_later(self):
+        image = self.compile(PROGRAMS / "paper.rsl")
+        self.upload(image)
+        before = rsc.info(self.board.port)["board"]["program"]["hash"]
+        self.board.qmp.command("stop")
+        for arguments in (["upload", self.compile(PROGRAMS / "priorities.rsl")], ["feed", "touch.LEVEL=1"], ["resume"]):
+            with self.subTest(verb=arguments[0]):
+                start = time.monotonic()
+                done = rsc.call(*arguments, "--port", self.board.port)
+                self.assertLess(time.monotonic() - start, 3)
+                self.assertEqual(done.returncode, 3)
+                self.assertIn("the board does not answer", done.stderr)
+                if arguments[0] == "upload":
+                    self.assertIn("The new program was not started: the old program keeps running", done.stderr)
+        self.board.qmp.command("cont")
+        self.assertEqual(rsc.info(self.board.port)["board"]["program"]["hash"], before)
 
     def test_every_thread_keeps_within_its_stack(self):
         self.upload(self.compile(PROGRAMS / "arithmetic.rsl"))

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <limits>
 #include <span>
 #include <string>
 #include <thread>
@@ -25,6 +26,8 @@ namespace robosync::test {
 // Carries bytes between a file descriptor and the robot, whose time follows the clock.
 class Bridge {
 public:
+  static constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+
   // `accepting`: `file` is a listening socket; else the line itself.
   Bridge(int file, bool accepting, const policy::BoardMemory& memory = boards::kMemory)
       : file_(file), accepting_(accepting), memory_(memory) {
@@ -42,13 +45,29 @@ public:
   std::size_t bytes_heard() const { return heard_; }
   // Closes the line, as a plug does that is pulled; then takes the next who comes.
   void hang_up() { hangs_up_ = true; }
+  // Another robot without a program is at the line from now on, as after a reset without a store.
+  void reset() { resets_ = true; }
+  // From now on the robot's answers are lost after this many bytes, or from the moment that a program runs.
+  void fall_silent_after(std::size_t bytes) { bytes_said_ = 0, says_at_most_ = bytes; }
+  void fall_silent_with_program() { silent_with_program_ = true; }
+  // Closes the line when the robot has answered this many bytes.
+  void hang_up_after(std::size_t bytes) { bytes_said_ = 0, hangs_up_at_ = bytes; }
 
 private:
   void run() {
-    Robot robot(memory_);
     int line = accepting_ ? -1 : file_;
-    const auto start = std::chrono::steady_clock::now();
     while (!stop_) {
+      resets_ = false;
+      live(line);
+    }
+    if (accepting_ && line >= 0) close(line);
+  }
+
+  // From a start of the robot to its reset.
+  void live(int& line) {
+    Robot robot(memory_);
+    const auto start = std::chrono::steady_clock::now();
+    while (!stop_ && !resets_) {
       if (line < 0) line = accept4(file_, nullptr, nullptr, SOCK_NONBLOCK);
       if (line >= 0 && (hangs_up_.exchange(false) || !carry(robot, line))) {
         if (accepting_) close(std::exchange(line, -1));
@@ -61,7 +80,6 @@ private:
         robot.run_tick();
       }
     }
-    if (accepting_ && line >= 0) close(line);
   }
 
   bool carry(test::Robot& robot, int line) {
@@ -74,7 +92,16 @@ private:
     }
     if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
     const std::size_t ready = robot.read(bytes, std::chrono::milliseconds(0));
-    return ready == 0 || write(line, std::span(bytes).first(ready)) >= 0;
+    if (bytes_said_ + ready > hangs_up_at_) {
+      hangs_up_at_ = kNever;
+      return false;
+    }
+    return ready == 0 || is_silent(robot, ready) || write(line, std::span(bytes).first(ready)) >= 0;
+  }
+
+  bool is_silent(const test::Robot& robot, std::size_t ready) {
+    bytes_said_ += ready;
+    return bytes_said_ > says_at_most_ || (silent_with_program_ && robot.runtime.running());
   }
 
   // Whoever listened may have hung up since it was read: an error, and no signal that ends this process.
@@ -87,7 +114,10 @@ private:
   bool accepting_;
   policy::BoardMemory memory_;
   std::atomic<bool> stop_ = false;
-  std::atomic<bool> hangs_up_ = false;
+  std::atomic<bool> hangs_up_ = false, resets_ = false;
+  std::atomic<bool> silent_with_program_ = false;
+  std::atomic<std::size_t> bytes_said_ = 0;
+  std::atomic<std::size_t> says_at_most_ = kNever, hangs_up_at_ = kNever;
   std::atomic<std::size_t> heard_ = 0;
   std::thread thread_;
 };

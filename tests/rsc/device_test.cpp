@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <sstream>
 #include <thread>
@@ -194,7 +195,7 @@ TEST_CASE("a program for another board than the one on the line is refused, and 
         {"feed", "touch.LEVEL=2", "--upload", image}}) {
     const Outcome outcome = device.run(upload);
     CAPTURE(outcome.err);
-    CHECK(outcome.exit == 1);
+    CHECK(outcome.exit == 3);
     CHECK_THAT(outcome.err,
                Contains("it is for b-l475e-iot01a, and this is mps2-an386: say \"board\": "
                         "\"mps2-an386\" in robot.json, and compile it again"));
@@ -215,28 +216,56 @@ TEST_CASE("a program this board cannot run is refused before it is sent, and the
   device.write("many.rsl", many);
   const Outcome outcome = device.run({"upload", device.path("many.rsl")});
   CAPTURE(outcome.err);
-  CHECK(outcome.exit == 1);
+  CHECK(outcome.exit == 3);
   CHECK_THAT(outcome.err, Contains("cannot run this program") && Contains("the program needs ") &&
                               Contains("the board has 12288 for programs"));
   const json info = json::parse(device.run({"info", "--format", "json"}).out);
   CHECK(info.at("status").at("activations") == 1);
 }
 
-TEST_CASE("a program for which there is no room beside the running one may replace it") {
+namespace {
+
+// One that needs many frames.
+std::string long_program() {
   const std::string tail = " is what it says to whoever reads what is in the log of it";
-  std::string talkative = std::string(test::kProgram) + "BEHAVIOR talks PRIORITY 1\n";
+  std::string text = std::string(test::kProgram) + "BEHAVIOR talks PRIORITY 1\n";
   for (int i = 0; i < 30; ++i)
-    talkative += "WHEN touch LEVEL = " + std::to_string(i % 10) + " DO\n  LOG \"" +
-                 std::to_string(i) + tail + "\"\nEND\n";
-  talkative += "END\n";
+    text += "WHEN touch LEVEL = " + std::to_string(i % 10) + " DO\n  LOG \"" + std::to_string(i) +
+            tail + "\"\nEND\n";
+  return text + "END\n";
+}
+
+std::string running_on(const Device& device) {
+  return json::parse(device.run({"info", "--format", "json"}).out)
+      .at("board")
+      .at("program")
+      .at("hash");
+}
+
+// Ends within three seconds with 3; a busy machine may take a little longer.
+Outcome fails_soon(const Device& device, const std::vector<std::string>& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  Outcome outcome = device.run(arguments);
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 3);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+  return outcome;
+}
+
+constexpr std::size_t kHelloReply = sizeof(link::HelloReply) + link::kFrameOverhead + 2;
+constexpr std::size_t kTransferStatus = sizeof(link::TransferStatus) + link::kFrameOverhead + 2;
+
+}  // namespace
+
+TEST_CASE("a program for which there is no room beside the running one may replace it") {
   const Device device(176 * 64);
-  const std::string file = device.write("talkative.rsl", talkative);
+  const std::string file = device.write("talkative.rsl", long_program());
   const Outcome first = device.run({"upload", file});
   CAPTURE(first.err);
   REQUIRE(first.exit == 0);
   const Outcome beside = device.run({"upload", file});
   CAPTURE(beside.err);
-  CHECK(beside.exit == 1);
+  CHECK(beside.exit == 3);
   CHECK_THAT(beside.err, Contains("bytes free, and the image has ") && Contains("--replace"));
   CHECK(json::parse(device.run({"info", "--format", "json"}).out).at("status").at("activations") ==
         1);
@@ -285,6 +314,68 @@ TEST_CASE("a port without firmware behind it is exit 3") {
   CHECK_THAT(outcome.err, Contains("the board does not answer") && Contains(robot.path("dumb")));
 }
 
+TEST_CASE("a board that falls silent in mid-upload: soon, and says that the old program runs") {
+  Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  const std::string old = running_on(device);
+  device.bridge.fall_silent_after(kHelloReply + 3 * kTransferStatus);
+  const Outcome outcome =
+      fails_soon(device, {"upload", device.write("long.rsl", long_program()), "--anyway"});
+  CHECK_THAT(outcome.err, Contains("has fallen silent") &&
+                              Contains("program " + old + " keeps running") &&
+                              Contains("upload again when the line works"));
+  device.bridge.fall_silent_after(Bridge::kNever);
+  CHECK(running_on(device) == old);
+}
+
+TEST_CASE("an activation whose answer is lost: soon, and says that the new program may run") {
+  Device device;
+  device.bridge.fall_silent_with_program();
+  const Outcome outcome = fails_soon(device, {"upload", device.program});
+  CHECK_THAT(outcome.err, Contains("may run") && Contains("`rsc info` shows what runs"));
+}
+
+TEST_CASE("orders to a board that falls silent end soon, and say that they may have been done") {
+  Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  for (const auto& [arguments, bytes] :
+       std::vector<std::pair<std::vector<std::string>, std::size_t>>{
+           {{"resume"}, kHelloReply},
+           {{"feed", "touch.LEVEL=2"}, kHelloReply},
+           {{"feed", "touch.LEVEL=2"}, kHelloReply + 300}}) {
+    device.bridge.fall_silent_after(bytes);
+    const Outcome outcome = fails_soon(device, arguments);
+    CHECK_THAT(outcome.err, Contains("has fallen silent"));
+    if (arguments.front() == "resume")
+      CHECK_THAT(outcome.err, Contains("may have done it all the same: `rsc info`"));
+  }
+}
+
+TEST_CASE("who interrupts an upload may start another one at once") {
+  Device device;
+  const std::string file = device.write("long.rsl", long_program());
+  const std::size_t heard = device.bridge.bytes_heard();
+  test::Running first({"upload", file, "--anyway", "--port", device.port});
+  while (device.bridge.bytes_heard() < heard + 600)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  (void)first.end(SIGINT);
+  const Outcome outcome = device.run({"upload", device.program});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+}
+
+TEST_CASE("a line that is closed in mid-upload: what runs, and what to do") {
+  Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  const std::string old = running_on(device);
+  device.bridge.hang_up_after(kHelloReply + 3 * kTransferStatus);
+  const Outcome outcome =
+      fails_soon(device, {"upload", device.write("long.rsl", long_program()), "--anyway"});
+  CHECK_THAT(outcome.err, Contains("the other end closed the line") &&
+                              Contains("program " + old + " keeps running") &&
+                              Contains("upload again when the line works"));
+}
+
 TEST_CASE("a line that is closed while somebody listens, and stays so, is exit 3") {
   auto device = std::make_unique<Device>();
   Outcome outcome;
@@ -296,6 +387,33 @@ TEST_CASE("a line that is closed while somebody listens, and stays so, is exit 3
   monitor.join();
   CHECK(outcome.exit == 3);
   CHECK_THAT(outcome.err, Contains("the other end closed the line; looking for it again"));
+}
+
+TEST_CASE("a monitor says once that the board has restarted") {
+  Device device;
+  REQUIRE(device.run({"upload", device.program}).exit == 0);
+  test::Running monitor({"monitor", "--port", device.port, "--duration", "5s"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  device.bridge.reset();
+  const Outcome outcome = monitor.end(0);
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(outcome.err == "rsc: the board has restarted\n");
+}
+
+// As on a laptop that sleeps: when it looks again, the board has been up for longer than at its last look.
+TEST_CASE("a monitor that was stopped meanwhile says that the board has restarted") {
+  Device device;
+  test::Running monitor({"monitor", "--port", device.port, "--duration", "14s"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(4500));
+  monitor.send(SIGSTOP);
+  device.bridge.reset();
+  std::this_thread::sleep_for(std::chrono::milliseconds(6500));
+  monitor.send(SIGCONT);
+  const Outcome outcome = monitor.end(0);
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(outcome.err == "rsc: the board has restarted\n");
 }
 
 TEST_CASE("a monitor finds a line again that was closed, and says so") {
@@ -364,6 +482,108 @@ TEST_CASE("a robot that was uploaded to while it was recorded is replayed to the
                                         Contains(R"("name":"mm")"));
   CHECK(device.run({"monitor", "--duration", "100ms", "--record", program, "--upload", program})
             .exit == 2);
+}
+
+namespace {
+
+// At the other end of a socket: sends `answer` again and again once it has heard something.
+class Talker {
+public:
+  Talker(int listener, std::vector<std::byte> answer)
+      : listener_(listener), answer_(std::move(answer)), thread_([this] { run(); }) {}
+  ~Talker() {
+    stop_ = true;
+    thread_.join();
+    close(listener_);
+  }
+  Talker(const Talker&) = delete;
+  Talker& operator=(const Talker&) = delete;
+
+private:
+  void run() {
+    int line = -1;
+    while (!stop_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      if (line < 0) line = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK);
+      std::array<std::byte, 512> bytes{};
+      if (line < 0) continue;
+      const ssize_t count = ::read(line, bytes.data(), bytes.size());
+      if (count == 0) close(std::exchange(line, -1));
+      if (count > 0) has_heard_ = true;
+      if (line >= 0 && has_heard_) (void)send(line, answer_.data(), answer_.size(), MSG_NOSIGNAL);
+    }
+    if (line >= 0) close(line);
+  }
+
+  int listener_;
+  std::vector<std::byte> answer_;
+  std::atomic<bool> stop_ = false;
+  bool has_heard_ = false;
+  std::thread thread_;
+};
+
+// A hello_reply of another protocol version with each sequence number, so that one of them fits.
+std::vector<std::byte> old_firmware() {
+  std::vector<std::byte> all;
+  for (unsigned sequence = 0; sequence < 16; ++sequence) {
+    std::array<std::byte, link::kMaxEncodedFrame> frame{};
+    const std::size_t length =
+        link::encode_frame(link::MessageType::hello_reply, static_cast<std::uint8_t>(sequence),
+                           std::array{std::byte{link::kProtocolVersion - 1}}, frame);
+    all.insert(all.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(length));
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("something that sends, but is no RoboSync firmware, is named") {
+  const RobotFolder robot;
+  std::vector<std::byte> noise;
+  for (int i = 0; i < 50; ++i)
+    noise.push_back(static_cast<std::byte>(i * 37 % 256));
+  const Talker talker(listen_at(robot.path("noise")), noise);
+  const std::string port = "unix:" + robot.path("noise");
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"info", "--port", port}, {"upload", robot.program, "--port", port}}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 3);
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+    CHECK_THAT(outcome.err,
+               Contains("something on " + port + " sends bytes, but not RoboSync's frames (") &&
+                   Contains("115,200 baud"));
+  }
+}
+
+TEST_CASE("firmware of another protocol version is named by every verb, also by stop") {
+  const RobotFolder robot;
+  const Talker talker(listen_at(robot.path("old")), old_firmware());
+  const std::string port = "unix:" + robot.path("old");
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"info", "--port", port},
+                                             {"upload", robot.program, "--port", port},
+                                             {"stop", "--port", port}}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(arguments.front(), outcome.err);
+    CHECK(outcome.exit == 3);
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+    CHECK_THAT(outcome.err, Contains("the firmware speaks version ") &&
+                                Contains("flash the firmware of this release"));
+  }
+}
+
+TEST_CASE("a line that takes no bytes is an error that says so, after two seconds") {
+  const RobotFolder robot;
+  const int listener = listen_at(robot.path("full"));
+  const std::unique_ptr<tool::Transport> transport = tool::open_port("unix:" + robot.path("full"));
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_THROWS_WITH(transport->write(std::vector<std::byte>(std::size_t{16} << 20)),
+                    Contains("full: the line takes no bytes"));
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+  close(listener);
 }
 
 TEST_CASE("to write on a line that is closed is an error, and no signal that ends the tool") {

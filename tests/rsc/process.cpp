@@ -97,6 +97,10 @@ bool Running::has_said(const std::string& text, std::size_t times) {
   return true;
 }
 
+void Running::send(int signal) const {
+  kill(process_, signal);
+}
+
 Outcome Running::end(int signal) {
   int exit = -1;
   if (process_ != 0 && kill(process_, signal) == 0) exit = wait_for(std::exchange(process_, 0));

@@ -31,6 +31,7 @@ public:
   [[nodiscard]] bool has_said(const std::string& text, std::size_t times);
   std::string out() const { return folder_.read("out"); }
   std::string err() const { return folder_.read("err"); }
+  void send(int signal) const;
   // Sends `signal`, and waits for the end.
   [[nodiscard]] Outcome end(int signal);
 

@@ -62,3 +62,22 @@ TEST_CASE("the board's counters wrap, and a list may come twice at one time") {
   CHECK(tool::threads_json(now, before)[0].at("cpu_percent") == 25.0 / 2);
   CHECK_FALSE(tool::threads_json(before, before)[0].contains("cpu_percent"));
 }
+
+TEST_CASE("several threads may have one name: each is compared with itself") {
+  const std::vector<link::ThreadInfo> before = {thread("rule", 50, 50, 900'000, 1000),
+                                                thread("rule", 50, 50, 100, 1000)};
+  const std::vector<link::ThreadInfo> now = {thread("rule", 50, 50, 900'100, 2000),
+                                             thread("rule", 50, 50, 400, 2000)};
+  const auto json = tool::threads_json(now, before);
+  CHECK(json[0].at("cpu_percent") == 10.0);
+  CHECK(json[1].at("cpu_percent") == 30.0);
+  CHECK(tool::load_of(now, before) == 40.0);
+}
+
+TEST_CASE("a thread that would have run backwards, or for longer than the time, has no share") {
+  const std::vector<link::ThreadInfo> before = {thread("rule", 50, 50, 900'000, 1000)};
+  const std::vector<link::ThreadInfo> now = {thread("rule", 50, 50, 400, 2000)};
+  CHECK_FALSE(tool::threads_json(now, before)[0].contains("cpu_percent"));
+  CHECK_FALSE(tool::load_of(now, before));
+  CHECK(tool::threads_table(now, before).find(" % ") == std::string::npos);
+}

@@ -75,7 +75,7 @@ TEST_CASE("an upload to several robots goes on without those that are not there 
 
   Outcome outcome = upload_to({small.port, good.port}, good.path("many.rsl"));
   CAPTURE(outcome.out, outcome.err);
-  CHECK(outcome.exit == 1);
+  CHECK(outcome.exit == 3);
   CHECK_THAT(outcome.err, Contains("many.rsl runs on 1 of 2 robots"));
   CHECK(running_at(small).empty());
   const std::string hash = running_at(good);
@@ -108,11 +108,11 @@ TEST_CASE("a program for another board than several robots are is refused for ea
   const Outcome outcome =
       upload_to({mine.port, here.port}, mine.program, {"--config", config, "--format", "json"});
   CAPTURE(outcome.out, outcome.err);
-  CHECK(outcome.exit == 1);
+  CHECK(outcome.exit == 3);
   const json list = json::parse(outcome.out);
   CHECK(list.size() == 2);
   for (const json& one : list) {
-    CHECK(one.at("exit") == 1);
+    CHECK(one.at("exit") == 3);
     CHECK_THAT(one.at("error").get<std::string>(),
                Contains("it is for b-l475e-iot01a, and this is mps2-an386"));
   }

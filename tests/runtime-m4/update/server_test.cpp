@@ -387,7 +387,7 @@ TEST_CASE("a board that never stops talking, and answers nothing, does not keep 
   };
   Talker talker;
   tool::Client client(talker);
-  CHECK_THROWS_WITH(client.hello(), Catch::Contains("the board does not answer"));
+  CHECK_THROWS_WITH(client.hello(), Catch::Contains("the board sends, but does not answer"));
 }
 
 TEST_CASE("a board without power is reported with the port's name") {

@@ -2,11 +2,16 @@
 // mix them; and hosts that go away, come back, or find the board restarted.
 #include "runtime-m4/update/session.hpp"
 
+#include <array>
 #include <cstring>
+#include <string>
 
 #include <catch2/catch.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "rsc/device/client.hpp"
+#include "rsc/device/host_name.hpp"
 #include "rsc/device/uploader.hpp"
 #include "rsc/failure.hpp"
 #include "tests/runtime-m4/update/programs.hpp"
@@ -23,10 +28,10 @@ constexpr unsigned kSilenceMs = 3000;
 
 constexpr link::SessionId kDesk = 0x00770077;
 
-// Another host, `desk`, is in the middle of a transfer: it has sent hello and begin.
-void desk_begins(Robot& robot, const tool::Program& program) {
+// Another host is in the middle of a transfer: it has sent hello and begin.
+void host_begins(Robot& robot, const tool::Program& program, const link::Name& host) {
   tool::Client client(robot);
-  client.send(MessageType::hello, link::wire_bytes(link::Hello{kDesk, 0, {}, {"desk"}}));
+  client.send(MessageType::hello, link::wire_bytes(link::Hello{kDesk, 0, {}, host}));
   REQUIRE(client.next_reply(milliseconds(100)));
   const auto size = static_cast<std::uint32_t>(program.bytes().size());
   const link::Begin begin{kDesk, size, test::name_of(program), {}};
@@ -34,6 +39,26 @@ void desk_begins(Robot& robot, const tool::Program& program) {
   const auto reply = client.next_reply(milliseconds(100));
   REQUIRE(reply);
   REQUIRE(reply->type == MessageType::transfer_status);
+}
+
+// The number of a process that does not exist any more.
+pid_t ended_process() {
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  REQUIRE(waitpid(child, nullptr, 0) == child);
+  return child;
+}
+
+void desk_begins(Robot& robot, const tool::Program& program) {
+  host_begins(robot, program, {"desk"});
+}
+
+// This computer's name, as another computer with the same name would give it.
+link::Name namesake() {
+  link::Name name = tool::host_name(ended_process());
+  name.back() = static_cast<char>(~name.back());  // another process …
+  name[link::kNameLength - 5] = static_cast<char>(~name[link::kNameLength - 5]);  // … elsewhere
+  return name;
 }
 
 bool uploads(tool::Client& client, const tool::Program& program) {
@@ -124,6 +149,52 @@ TEST_CASE("what another rsc of this computer has left behind does not keep the l
   }
   tool::Client next(robot);
   CHECK(uploads(next, mine));
+}
+
+TEST_CASE("another computer with the same name keeps the line that it has") {
+  Robot robot;
+  host_begins(robot, test::program(3), namesake());
+  tool::Client second(robot);
+  CHECK_THROWS_WITH(uploads(second, test::program(5)), Catch::Contains("busy: "));
+}
+
+TEST_CASE("what a process of this computer has left behind is taken when the process has ended") {
+  const tool::Program mine = test::program(3), other = test::program(5);
+  SECTION("it has ended") {
+    Robot robot;
+    host_begins(robot, mine, tool::host_name(ended_process()));
+    tool::Client next(robot);
+    CHECK(uploads(next, other));
+  }
+  SECTION("it still runs") {
+    Robot robot;
+    host_begins(robot, mine, tool::host_name(getppid()));
+    tool::Client next(robot);
+    CHECK_THROWS_WITH(uploads(next, other), Catch::Contains("busy: "));
+    robot.run(kSilenceMs + 100);
+    CHECK(uploads(next, other));
+  }
+}
+
+TEST_CASE("of a host's name only the name is shown") {
+  std::array<char, 256> name{};
+  REQUIRE(gethostname(name.data(), name.size() - 1) == 0);
+  const std::string whole = name.data();
+  CHECK(tool::host_text(tool::host_name(getpid())) == whole.substr(0, 11));
+  CHECK(tool::host_text({"raspberrypi1234"}) == "raspberrypi");
+  CHECK_FALSE(tool::is_gone({"raspberrypi1234"}));
+  CHECK_FALSE(tool::is_gone({"desk"}));
+  CHECK_FALSE(tool::is_gone({}));
+}
+
+TEST_CASE("a line that was taken is not taken back") {
+  Robot robot;
+  const tool::Program mine = test::long_program();
+  tool::Client first(robot, milliseconds(2000), true);
+  REQUIRE(first.hello().running == 0);
+  desk_begins(robot,
+              test::program(3));  // closes the session of the first, whose upload has not begun
+  CHECK_THROWS_WITH(tool::upload(first, {}, mine.bytes(), {}), Catch::Contains("busy: desk"));
 }
 
 TEST_CASE("a board that has started again knows no session, and is greeted again") {

@@ -175,6 +175,45 @@ TEST_CASE("one frame in five damaged at random, both ways") {
   }
 }
 
+namespace {
+
+std::chrono::milliseconds since(std::uint64_t us, const Robot& robot) {
+  return std::chrono::milliseconds((robot.kernel.now() - us) / 1000);
+}
+
+// All frames are lost from the first one of this type.
+test::Damage lost_from(link::MessageType type, std::uint64_t& since, const Robot& robot) {
+  return [&since, &robot, type](const Bytes& frame, std::size_t) {
+    // COBS does not move the type: it is the second byte.
+    const bool it = frame.size() > 1 && std::to_integer<int>(frame[1]) == static_cast<int>(type);
+    if (it && since == 0) since = robot.kernel.now();
+    return since == 0 ? frame : Bytes();
+  };
+}
+
+}  // namespace
+
+TEST_CASE("a board that falls silent in an upload: exit 3 within three seconds, and what runs") {
+  const tool::Program old_program = test::program(3);
+  const tool::Program new_program = test::long_program();
+  const auto fails = [&](link::MessageType from, const std::string& what_runs) {
+    Scene scene(old_program, new_program);
+    std::uint64_t silent = 0;
+    scene.robot.to_host.set(lost_from(from, silent, scene.robot));
+    try {
+      (void)scene.upload();
+      FAIL("nothing came any more");
+    } catch (const tool::Failure& failure) {
+      CHECK(failure.exit() == tool::Exit::outside);
+      CHECK_THAT(failure.what(), Catch::Contains("memory: the board has fallen silent") &&
+                                     Catch::Contains(what_runs));
+    }
+    CHECK(since(silent, scene.robot) < std::chrono::milliseconds(2800));
+  };
+  fails(link::MessageType::transfer_status, "the old program keeps running");
+  fails(link::MessageType::activate_result, "may run");
+}
+
 TEST_CASE("another host begins a transfer before the activation: the upload starts again") {
   const tool::Program old_program = test::program(3);
   const tool::Program new_program = test::program(4);
