@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "runtime-m4/layers/kept.hpp"
 #include "vm/opcode_traits.hpp"
 
 namespace robosync::safety {
@@ -18,11 +19,7 @@ std::uint32_t add(std::uint32_t key, std::byte byte) {
 
 // A name ends with a zero byte, so that two names never look like one.
 std::uint32_t add_name(std::uint32_t key, std::string_view name) {
-  for (const char letter : name) {
-    const bool capital = letter >= 'A' && letter <= 'Z';
-    key = add(key, static_cast<std::byte>(capital ? letter - 'A' + 'a' : letter));
-  }
-  return add(key, std::byte{0});
+  return add(layers::text_key(name, key), std::byte{0});
 }
 
 std::uint32_t add_input(std::uint32_t key, const vm::Image& image, std::size_t input) {
