@@ -110,6 +110,8 @@ Interval result_of(const vm::Image& image, vm::Word word, std::span<const Interv
       return quotient(b, c);
     case Opcode::random:
       return hull(b, c);
+    case Opcode::elapsed:  // the time of a TIMER, always known
+      return {0, vm::kValueMax};
     case Opcode::add_fast:
     case Opcode::add_k_fast:
     case Opcode::mul_fast:

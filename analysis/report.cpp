@@ -69,6 +69,7 @@ ResponseReport response_report(const vm::Image& image, const policy::BoardCosts&
   report.utilization = utilization(base);
   report.adapts = cap > 0;
   report.short_wait = base.short_wait;
+  report.has_sensors = !image.channels.empty();
   report.loads = loads_of(base, report.instructions_per_ms);
   if (depth == Depth::until_refused && report.utilization > 1) return report;
   const TaskSet adapted = cap > 0 ? task_set_of(image, board, module_cost, cap) : TaskSet{};

@@ -31,6 +31,7 @@ struct ResponseReport {
   std::vector<PathTiming> paths;
   std::vector<Contributor> loads;          // per millisecond, the largest first
   unsigned short_wait = TaskSet::kNoWait;  // as in TaskSet
+  bool has_sensors = true;                 // that the program reads
   [[nodiscard]] bool schedulable() const;
   // Rounded up.
   [[nodiscard]] Instructions microseconds(Instructions instructions) const;

@@ -44,6 +44,8 @@ std::string share_text(const PathTiming& path, const ResponseTime& response) {
 
 // If a WAIT is the cause, sensors are not.
 std::string mend_of(const ResponseReport& report) {
+  if (report.short_wait == analysis::TaskSet::kNoWait && !report.has_sensors)
+    return "let rules run less often, or make those that cost most cheaper";
   if (report.short_wait == analysis::TaskSet::kNoWait)
     return "give a sensor a lower rate in robot.json, let rules run less often or fewer read it, "
            "or "

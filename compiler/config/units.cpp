@@ -26,6 +26,14 @@ constexpr std::array kUnits = {
 #undef UNIT
 };
 
+constexpr auto kDifferenceUnits = [] {
+  auto units = kUnits;
+  for (Unit& unit : units)
+    unit.offset = 0;
+  return units;
+}();
+constexpr char kDifferenceSign = '+';
+
 struct OtherName {
   std::string_view name, spelling;
 };
@@ -164,6 +172,16 @@ const Unit& canonical_unit(vm::Dimension dimension) {
   return kUnits[kCanonical[static_cast<std::size_t>(dimension)]];
 }
 
+const Unit& difference_unit(const Unit& unit) {
+  if (unit.offset == 0) return unit;
+  const auto same = [&](const Unit& other) { return other.spelling == unit.spelling; };
+  return *std::ranges::find_if(kDifferenceUnits, same);
+}
+
+bool is_of_differences(const Unit& unit) {
+  return std::ranges::any_of(kDifferenceUnits, [&](const Unit& other) { return &other == &unit; });
+}
+
 std::string_view dimension_phrase(vm::Dimension dimension) {
   return kDimensions[static_cast<std::size_t>(dimension)].phrase;
 }
@@ -286,19 +304,31 @@ std::string too_many_digits(std::string_view text) {
          std::to_string(kMaxDecimals);
 }
 
+namespace {
+
+// "cm", "+F".
+const Unit* unit_of_place(std::string_view text) {
+  if (!text.starts_with(kDifferenceSign)) return find_unit(text);
+  const Unit* const unit = find_unit(text.substr(1));
+  return unit == nullptr || unit->offset == 0 ? nullptr : &difference_unit(*unit);
+}
+
+}  // namespace
+
 std::optional<ValuePlace> find_place(std::string_view text) {
   for (std::size_t begin = text.find('{'); begin != std::string_view::npos;
        begin = text.find('{', begin + 1)) {
     const std::size_t end = text.find('}', begin);
     if (end == std::string_view::npos) break;
-    if (const Unit* const unit = find_unit(text.substr(begin + 1, end - begin - 1)))
+    if (const Unit* const unit = unit_of_place(text.substr(begin + 1, end - begin - 1)))
       return ValuePlace{begin, end + 1 - begin, unit};
   }
   return std::nullopt;
 }
 
 std::string place_for(const Unit& unit) {
-  return "{" + std::string(unit.spelling) + "}";
+  return (is_of_differences(unit) ? std::string("{") + kDifferenceSign : "{") +
+         std::string(unit.spelling) + "}";
 }
 
 namespace {

@@ -22,6 +22,9 @@ struct Unit {
 // Accepts any case and a unit's other names. nullptr if there is no such unit. "" is the plain number.
 [[nodiscard]] const Unit* find_unit(std::string_view spelling);
 [[nodiscard]] const Unit& canonical_unit(vm::Dimension dimension);
+// The unit of a difference: 9F more are 5C more, so the one of F has no offset. The others are their own.
+[[nodiscard]] const Unit& difference_unit(const Unit& unit);
+[[nodiscard]] bool is_of_differences(const Unit& unit);                    // only: false for cm
 [[nodiscard]] std::string_view dimension_phrase(vm::Dimension dimension);  // "a distance"
 
 // A decimal number as written: mantissa / 10^decimals.
@@ -54,7 +57,8 @@ struct Decimal {
 // For messages: why parse_decimal() rejects what looks like a number; empty if its length is not the reason.
 [[nodiscard]] std::string too_many_digits(std::string_view text);
 
-// A place for a value in a text that is output: "{cm}" for a number of centimetres, "{}" for a plain one. The board sends the
+// A place for a value in a text that is output: "{cm}" for a number of centimetres, "{}" for a plain one, "{+F}" for a difference
+// of temperatures. The board sends the
 // text and the values separately; the host combines them.
 struct ValuePlace {
   std::size_t begin = 0, size = 0;  // in the text

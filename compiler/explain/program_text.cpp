@@ -175,9 +175,11 @@ private:
       say(kIndent, fmt::format("{}: {}", band.label.text, range(band)));
     if (node.bands.size() > 1) say(kIndent, "The first one from the top that fits counts.");
     if (node.margin) {
-      say(kIndent, fmt::format("It changes only when the value is {} past a limit, so that it "
-                               "does not flicker.",
-                               number(*node.margin)));
+      say(kIndent,
+          fmt::format("It leaves one only when the value is {} past its limit{}, so that it "
+                      "does not flicker.",
+                      number(*node.margin),
+                      node.bands.size() > 1 ? ", or when an earlier one fits" : ""));
     }
     if (node.smooth) {
       say(kIndent, fmt::format("It uses the median of the readings of the last {}, so that a "

@@ -51,11 +51,12 @@ public:
 
   void write(const ast::Modifiers& modifiers) {
     if (modifiers.margin) {
-      say(kRuleIndent, fmt::format("{}nce true, {}stays true until the value is {} back past its "
-                                   "limit, so that it does not flicker{}.",
-                                   one_comparison_ ? "O" : "Each comparison in it, o",
-                                   one_comparison_ ? "it " : "", number(*modifiers.margin),
-                                   has_not_ ? "; NOT reverses the result" : ""));
+      say(kRuleIndent,
+          fmt::format("{}nce true, {}stays true until the value is {} back past its "
+                      "limit, so that it does not flicker{}.",
+                      one_comparison_ ? "O" : "Each comparison in it with this kind of unit, o",
+                      one_comparison_ ? "it " : "", number(*modifiers.margin),
+                      has_not_ ? "; NOT reverses the result" : ""));
     }
     if (modifiers.cooldown) {
       say(kRuleIndent, fmt::format("After {} has started, {} does not start again for {}.",

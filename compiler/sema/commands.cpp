@@ -163,6 +163,7 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
   if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
   const auto candidates = names_.target_names();
   did_you_mean(d, first->name.span, first->name.text, candidates);
+  names_.doubt_group(d, first->name.text);
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
 }
 
@@ -289,6 +290,7 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
   }
   const auto candidates = names_.target_names();
   did_you_mean(d, name.span, name.text, candidates);
+  names_.doubt_group(d, name.text);
   if (d.help.empty() && !candidates.empty()) d.helps("actuators: " + list_names(candidates));
   return std::nullopt;
 }
@@ -551,6 +553,7 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   if (did_you_mean(d, word.name.span, word.name.text, candidates) &&
       !may_be_preposition(to.command, word))
     doubt_keyword(d);
+  names_.doubt_group(d, word.name.text);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
   if (names_.find_list(word.name.text) != nullptr)
     d.helps("it is a LIST; choose one of its texts: `ANY " + std::string(word.name.text) + "`");

@@ -383,4 +383,16 @@ void lint_while(const ast::Rule& rule, const ast::Expr& condition, const Express
           Applicability::likely);
 }
 
+bool lint_sides(const ast::Expr& condition, const Expression& code, Diagnostics& diagnostics) {
+  if (!is_moment(code)) return false;
+  Diagnostic& d = diagnostics
+                      .report(Code::W0220,
+                              "this is true only for a moment: the ELSE side would interrupt the "
+                              "DO side after 1 ms")
+                      .label(condition.span);
+  offer_is(condition, d);
+  d.helps("without ELSE, WHEN runs the whole response each time");
+  return true;
+}
+
 }  // namespace robosync::compiler

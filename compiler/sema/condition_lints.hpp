@@ -26,5 +26,7 @@ void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics);
 void lint_held(const ast::Expr& condition, const Expression& code, Diagnostics& diagnostics);
 void lint_while(const ast::Rule& rule, const ast::Expr& condition, const Expression& code,
                 Diagnostics& diagnostics);
+// The same for a WHEN with ELSE. True if it has warned.
+bool lint_sides(const ast::Expr& condition, const Expression& code, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

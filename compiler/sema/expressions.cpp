@@ -183,6 +183,7 @@ Typed Expressions::variable(VariableName& name, Span span) {
   Expression code;
   code.operation = Operation::variable;
   code.index = name.index;
+  name.heard = true;
   if (name.kind == vm::VariableKind::signal)
     return make_condition(make_unary(Operation::changed, std::move(code)), span);
   if (!name.ready) {
@@ -314,7 +315,10 @@ void set_range(Typed& result, const Typed& left, const Typed& right) {
 
 Typed Expressions::of(const ast::Negate& node, Span span) {
   Typed inner = number(*node.value);
-  if (!inner.is_number() || report_offset_unit(inner, diagnostics_)) return make_nothing(span);
+  const bool is_literal = inner.is_number() && inner.is_constant() && !inner.digits.empty();
+  if (!inner.is_number() || (!is_literal && report_point(inner, diagnostics_)))
+    return make_nothing(span);
+  if (is_point(inner)) return negative_point(std::move(inner), span);
   if (inner.is_constant()) {
     inner.code.constant = -inner.code.constant;
     inner.bare.mantissa = -inner.bare.mantissa;
@@ -329,12 +333,27 @@ Typed Expressions::of(const ast::Negate& node, Span span) {
   return inner;
 }
 
+// `-5F` is one number, not the negative of 5F.
+Typed Expressions::negative_point(Typed literal, Span span) {
+  literal.span = span;
+  literal.digits = "-" + literal.digits;
+  literal.bare.mantissa = -literal.bare.mantissa;
+  const auto value = to_value(literal.bare, *literal.unit);
+  if (!value) {
+    const std::string number = literal.digits + std::string(literal.unit->spelling);
+    diagnostics_.report(Code::E0304, no_room_for(number, *literal.unit)).label(span);
+    return make_nothing(span);
+  }
+  literal.code.constant = *value;
+  literal.low = *value;
+  literal.high = *value;
+  return literal;
+}
+
 Typed Expressions::of(const ast::Arithmetic& node, Span span) {
   Typed left = number(*node.left);
   Typed right = number(*node.right);
   if (!left.is_number() || !right.is_number()) return make_nothing(span);
-  if (report_offset_unit(left, diagnostics_) || report_offset_unit(right, diagnostics_))
-    return make_nothing(span);
   const bool divides = node.op == ast::ArithmeticOp::div || node.op == ast::ArithmeticOp::mod;
   if (divides) check_divisor(right);
   const bool scales = node.op == ast::ArithmeticOp::mul || node.op == ast::ArithmeticOp::div;
@@ -344,6 +363,9 @@ Typed Expressions::of(const ast::Arithmetic& node, Span span) {
 
 void Expressions::check_divisor(const Typed& divisor) {
   if (divisor.low > 0 || divisor.high < 0) return;
+  if (divisor.code.operation == Operation::variable &&
+      names_.variables()[divisor.code.index].fixed.value_or(0) != 0)
+    return;
   const bool certain = divisor.is_constant();
   diagnostics_
       .report(Code::W0217, certain ? "this divides by zero, which gives 0"
@@ -356,14 +378,29 @@ Typed Expressions::sum(const ast::Arithmetic& node, Typed left, Typed right, Spa
   constexpr std::array<std::string_view, 5> kDoing = {"this adds {} and {}",
                                                       "this takes the difference of {} and {}", "",
                                                       "", "this divides {} by {}"};
-  if (!unify(left, right, kDoing[static_cast<std::size_t>(node.op)], true, diagnostics_))
-    return make_nothing(span);
+  const std::string_view doing = kDoing[static_cast<std::size_t>(node.op)];
+  const bool subtracts = node.op == ast::ArithmeticOp::sub;
+  const bool from_point = subtracts && left.is_bare() && is_point(right);
+  if (!unify(left, right, doing, !from_point, diagnostics_)) return make_nothing(span);
   const Unit* unit = left.unit;
+  if (node.op == ast::ArithmeticOp::mod) {
+    if (report_points(left, right)) return make_nothing(span);
+  } else if (is_point(left) || is_point(right) || is_difference(left) || is_difference(right)) {
+    unit = unify_sum(left, right, subtracts, doing, diagnostics_);
+    if (unit == nullptr) return make_nothing(span);
+  }
   return combine(node.op, std::move(left), std::move(right), unit, span);
+}
+
+// MOD, * and /: reports a temperature in F. A literal may be a difference.
+bool Expressions::report_points(const Typed& left, Typed& right) {
+  if (is_difference(left)) make_difference(right);
+  return report_point(left, diagnostics_) || report_point(right, diagnostics_);
 }
 
 // * and /: one side is a plain number, or both have one dimension and the quotient is plain.
 Typed Expressions::product(const ast::Arithmetic& node, Typed left, Typed right, Span span) {
+  if (report_points(left, right)) return make_nothing(span);
   const Unit& plain = canonical_unit(vm::Dimension::number);
   const bool divides = node.op == ast::ArithmeticOp::div;
   const bool left_plain = left.dimension() == vm::Dimension::number;
@@ -471,7 +508,7 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
 bool is_amount(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
   if (number.is_bare()) take_unit(number, wanted, diagnostics);
   if (!number.is_number()) return false;
-  if (number.dimension() == wanted.unit->dimension) return true;
+  if (number.dimension() == wanted.unit->dimension) return fits_scale(number, wanted, diagnostics);
   report_amount(number, wanted, diagnostics);
   return false;
 }
@@ -481,10 +518,7 @@ bool is_amount(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
 // Has a single result, so that returning it needs no move: every number of a program passes through here.
 Typed Expressions::amount(const ast::Expr& expr, const Wanted& wanted) {
   Typed result = number(expr);
-  if (!is_amount(result, wanted, diagnostics_))
-    result = make_nothing(expr.span);
-  else if (wanted.difference)
-    make_difference(result);
+  if (!is_amount(result, wanted, diagnostics_)) result = make_nothing(expr.span);
   return result;
 }
 

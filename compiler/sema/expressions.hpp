@@ -136,6 +136,8 @@ private:
   Typed channel(ChannelRef ref, Span span);
   Typed variable(VariableName& name, Span span);
   Typed parameter(const Binding& binding, const ast::Operand& operand, Span span);
+  Typed negative_point(Typed literal, Span span);
+  bool report_points(const Typed& left, Typed& right);
   Typed sum(const ast::Arithmetic& node, Typed left, Typed right, Span span);
   Typed product(const ast::Arithmetic& node, Typed left, Typed right, Span span);
   Typed combine(ast::ArithmeticOp op, Typed left, Typed right, const Unit* unit, Span span);

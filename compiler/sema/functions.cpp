@@ -89,11 +89,13 @@ Typed Expressions::of(const ast::Function& node, Span span) {
 
 Typed Expressions::of_one(Operation operation, const ast::Function& node, Span span) {
   Typed inner = number(*node.first);
-  if (!inner.is_number() || report_offset_unit(inner, diagnostics_)) return make_nothing(span);
+  const bool rounds = operation == Operation::round;
+  const bool takes_points = rounds && !inner.is_constant();
+  if (!inner.is_number() || (!takes_points && report_point(inner, diagnostics_)))
+    return make_nothing(span);
   const Unit& unit = unit_of(inner);
   const vm::Value step = step_of(unit);
   inner.span = span;
-  const bool rounds = operation == Operation::round;
   if (inner.is_constant()) {
     const vm::Value value = inner.code.constant;
     become_constant(inner, rounds ? vm::round_to(value, step) : vm::absolute(value));

@@ -40,6 +40,7 @@ void Limits::report_unknown(const ast::Limit& limit) {
             .label(limit.actuator.span);
     if (diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size()))
       did_you_mean(d, limit.actuator.span, limit.actuator.text, names_.target_names());
+    names_.doubt_group(d, limit.actuator.text);
     return;
   }
   Diagnostic& d = diagnostics_

@@ -442,7 +442,7 @@ void lint_waits(const LintInput& input) {
   }
 }
 
-// ---- W0206, W0211: unused names and labels
+// ---- W0206, W0211: names and labels that nothing uses or sets
 
 namespace {
 
@@ -491,6 +491,19 @@ void lint_unused(const LintInput& input) {
     if (!constant.used && !constant.in_module)
       input.diagnostics.report(Code::W0211, "nothing uses " + constant.let->name.shown())
           .label(constant.let->name.span);
+  for (const VariableName& variable : input.names.variables())
+    if (variable.kind == vm::VariableKind::signal && !variable.heard && !variable.in_module)
+      input.diagnostics.report(Code::W0211, "no rule asks for the signal " + variable.name.shown())
+          .label(variable.name.span)
+          .helps("to react to it, write `WHEN " + std::string(variable.name.text) + "`");
+}
+
+void lint_remember(const VariableName& variable, Diagnostics& diagnostics) {
+  if (!variable.fixed) return;
+  diagnostics.report(Code::W0206, "nothing ever sets " + variable.name.shown())
+      .label(variable.name.span)
+      .helps("a number that stays the same is a LET: `LET " + std::string(variable.name.text) +
+             " = " + format_value(*variable.fixed, *variable.unit) + "`");
 }
 
 }  // namespace
@@ -499,8 +512,10 @@ void lint_names(const LintInput& input) {
   lint_unused(input);
   const Entered entered = labels_set(input.program);
   for (const VariableName& variable : input.names.variables()) {
+    if (variable.in_module) continue;
+    lint_remember(variable, input.diagnostics);
     const auto* state = std::get_if<const ast::State*>(&variable.declared);
-    if (state == nullptr || variable.in_module) continue;
+    if (state == nullptr) continue;
     const auto found = entered.find(variable.index);
     lint_state(**state, found == entered.end() ? std::set<vm::Value>{} : found->second,
                input.diagnostics);

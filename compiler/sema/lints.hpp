@@ -28,7 +28,7 @@ struct LintInput {
 void lint_rules(const LintInput& input);
 // W0205: a WAIT UNTIL without WITHIN.
 void lint_waits(const LintInput& input);
-// W0206, W0211: labels that are never entered or left; a DEFINE or LET that nothing uses.
+// W0206, W0211: labels that are never entered or left; a REMEMBER that nothing sets; a DEFINE, LET or signal that nothing uses.
 void lint_names(const LintInput& input);
 // W0208, W0209, W0218: thresholds on noisy sensors; motion without SAFETY; no rule at all.
 void lint_robot(const LintInput& input);

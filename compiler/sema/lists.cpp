@@ -156,7 +156,7 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
       if (!item) return std::nullopt;
       chosen.places = {*item, *item};
     } else {
-      chosen.index = item_index(*choice.list, std::move(number), span, result);
+      chosen.index = item_index(*choice.list, std::move(number), true, span, result);
     }
   } else if (count > 1) {
     chosen.index = choice.how == ListChoice::How::next ? next_index(choice, span, result)
@@ -165,22 +165,36 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
   return chosen;
 }
 
-// Evaluates the index once. An index outside the list takes the nearest item and is logged.
-Expression Statements::item_index(const ListName& list, Typed index, Span span, ir::Block& result) {
+// Evaluates the index once. An index outside the list takes the nearest item and is logged; for a text, so is an unknown one,
+// because it takes none.
+Expression Statements::item_index(const ListName& list, Typed index, bool is_text, Span span,
+                                  ir::Block& result) {
   const std::string name(list.list->name.text);
   const std::size_t count = list.count();
   Expression local =
       in_local(make_binary(Operation::round, std::move(index.code), make_constant_code(vm::kScale)),
                span, result);
+  const ir::Log log{
+      false, "there is no ITEM {} OF " + name + ", which has " + std::to_string(count), {local}};
   ir::If outside;
   outside.condition = make_binary(
       Operation::logical_or, make_binary(Operation::less, local, make_constant_code(vm::kScale)),
       make_binary(Operation::greater, local, make_constant_code(whole(count))));
-  put(ir::Log{false,
-              "there is no ITEM {} OF " + name + ", which has " + std::to_string(count),
-              {local}},
-      span, outside.then_block);
+  put(log, span, outside.then_block);
+  if (!is_text) {
+    put(std::move(outside), span, result);
+    return local;
+  }
+  // An IF with an unknown condition runs neither side.
+  const std::size_t known = locals_++;
+  put(ir::Local{known, make_constant_code(0), true}, span, result);
+  for (ir::Block* const side : {&outside.then_block, &outside.else_block})
+    put(ir::Local{known, make_constant_code(vm::kScale), true}, span, *side);
   put(std::move(outside), span, result);
+  ir::If unknown;
+  unknown.condition = make_binary(Operation::equal, make_local(known), make_constant_code(0));
+  put(log, span, unknown.then_block);
+  put(std::move(unknown), span, result);
   return local;
 }
 
@@ -227,7 +241,7 @@ void Statements::put_one_of(const Expression& index, std::pair<std::size_t, std:
 Expression Statements::choose_number(const NumberList& list, Typed index, Span span,
                                      ir::Block& result) {
   const std::size_t local = locals_++;
-  const Expression place = item_index(*list.list, std::move(index), span, result);
+  const Expression place = item_index(*list.list, std::move(index), false, span, result);
   put(ir::Local{local, place, true}, span, result);
   const auto put_number = [&](std::size_t item, ir::Block& into) {
     put(ir::Local{local, make_constant_code(list.values[item]), true}, span, into);

@@ -73,6 +73,7 @@ bool Motions::add_columns(const ast::Motion& motion, std::vector<std::vector<std
       if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return false;
       const auto candidates = names_.target_names();
       did_you_mean(d, column.span, column.text, candidates);
+      names_.doubt_group(d, column.text);
       if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
       return false;
     }

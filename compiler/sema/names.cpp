@@ -251,6 +251,21 @@ std::vector<std::string> Names::target_names() const {
   return names;
 }
 
+void Names::doubt_group(Diagnostic& diagnostic, std::string_view word) const {
+  const auto is_in = [&](std::string_view name) {
+    return fold_name(name).find(fold_name(word)) != std::string::npos;
+  };
+  for (Fix& fix : diagnostic.fixes) {
+    const auto group = groups_.find(fix.replacement);
+    if (!group) continue;
+    const auto& members = robot_.groups[*group].members;
+    const bool is_member = std::ranges::any_of(
+        members, [&](std::size_t member) { return is_in(robot_.actuators[member].name.text); });
+    const bool is_singular = fold_name(fix.replacement) == fold_name(word) + "s";
+    if (is_member || is_singular) fix.applicability = Applicability::likely;
+  }
+}
+
 std::vector<std::string> Names::verb_names() const {
   std::vector<std::string> names;
   std::set<std::string_view> seen;
@@ -482,8 +497,19 @@ void Names::collect_signals(const ast::Tree& tree) {
 void Names::add_signals(const ast::Block& block) {
   for_each_statement(block, [this](const ast::Stmt& stmt) {
     if (const auto* signal = std::get_if<ast::Signal>(&stmt.node)) add_signal(signal->name);
+    add_set(stmt);
     add_turns(stmt);
   });
+}
+
+void Names::add_set(const ast::Stmt& stmt) {
+  if (const auto* set = std::get_if<ast::Set>(&stmt.node)) set_.insert(fold_name(set->name.text));
+  if (const auto* raise = std::get_if<ast::Raise>(&stmt.node))
+    set_.insert(fold_name(raise->name.text));
+}
+
+bool Names::is_set(const VariableName& variable) const {
+  return set_.contains(fold_name(variable.name.text));
 }
 
 void Names::add_signal(const ast::Name& name) {

@@ -7,6 +7,7 @@
 #include <forward_list>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -50,12 +51,14 @@ struct VariableName {
   std::vector<std::string> labels;  // of state and band
   bool in_module = false;
   bool taken = false;  // also a sensor's name, which has been reported: no more messages about it
+  bool heard = false;  // a condition asks for this signal
   // Valid once it has been declared (Variables).
   bool ready = false;
   const Unit* unit = nullptr;
   Span unit_span{};
   std::int64_t low = vm::kValueMin;  // its range
   std::int64_t high = vm::kValueMax;
+  std::optional<vm::Value> fixed{};  // its value, if it is a REMEMBER that nothing sets
 };
 
 struct ListName {
@@ -123,6 +126,8 @@ public:
   [[nodiscard]] std::string channel_name(ChannelRef ref) const;  // "touch LEVEL"
 
   [[nodiscard]] std::vector<std::string> target_names() const;
+  // Makes the fix uncertain if it writes a group for a word that may mean one of its members: `arm` for `arms`.
+  void doubt_group(Diagnostic& diagnostic, std::string_view word) const;
   [[nodiscard]] std::vector<std::string> verb_names() const;
   [[nodiscard]] std::vector<std::string> define_names() const;
   [[nodiscard]] std::vector<std::string> variable_names() const;  // those visible here
@@ -133,6 +138,8 @@ public:
   [[nodiscard]] const std::map<std::string, ListName>& lists() const { return lists_; }
   // In the order of ir::Program::variables.
   [[nodiscard]] std::vector<VariableName>& variables() { return variables_; }
+  // True if a SET, RAISE or LOWER names it, in whatever scope.
+  [[nodiscard]] bool is_set(const VariableName& variable) const;
 
 private:
   using Places = std::map<std::string, std::size_t>;  // indices of variables, by folded name
@@ -155,6 +162,7 @@ private:
   void add(const Other&) {}  // has no name
   void collect_signals(const ast::Tree& tree);
   void add_signals(const ast::Block& block);
+  void add_set(const ast::Stmt& stmt);
   void add_signal(const ast::Name& name);
   void add_turns(const ast::Stmt& stmt);
   void add_turn(const ast::Name& how, const ast::Name& list);
@@ -179,6 +187,7 @@ private:
   std::map<std::string, ListName> lists_;
   std::map<std::string, MotionName> motions_;
   std::vector<VariableName> variables_;
+  std::set<std::string> set_;                  // what a SET, RAISE or LOWER names, folded
   std::forward_list<std::string> made_names_;  // of variables without a name in the source
   Places globals_;
   std::map<const ast::Behavior*, Places> private_;

@@ -102,8 +102,7 @@ void note_rounded(Decimal number, vm::Value value, const Unit& unit, Span span,
 }
 
 void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
-  Unit unit = *wanted.unit;
-  if (wanted.difference) unit.offset = 0;
+  const Unit& unit = wanted.difference ? difference_unit(*wanted.unit) : *wanted.unit;
   const auto value = to_value(number.bare, unit);
   if (!value) {
     const std::string digits = number.digits.empty() ? written(number.bare) : number.digits;
@@ -117,7 +116,7 @@ void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
                 "this is read as " + format_value(*value, unit) + ", the unit of " + wanted.source)
         .label(number.span);
   note_rounded(number.bare, *value, unit, number.span, diagnostics);
-  number.unit = wanted.unit;
+  number.unit = &unit;
   number.code.constant = *value;
   number.low = *value;
   number.high = *value;
@@ -131,7 +130,8 @@ bool unify(Typed& left, Typed& right, std::string_view doing, bool difference,
   else if (right.is_bare())
     take_unit(right, {left.unit, left.source, left.unit_span, difference}, diagnostics);
   if (!left.is_number() || !right.is_number()) return false;
-  if (left.dimension() == right.dimension()) return true;
+  if (left.dimension() == right.dimension())
+    return difference || unify_scales(left, right, doing, diagnostics);
   const bool left_first = is_literal(left);
   suggest_units(report_mismatch(left, right, doing, diagnostics), left_first ? left : right,
                 left_first ? right : left);
@@ -148,28 +148,89 @@ Diagnostic& report_mismatch(const Typed& left, const Typed& right, std::string_v
   return d;
 }
 
-bool report_offset_unit(const Typed& number, Diagnostics& diagnostics) {
-  const bool is_point = number.is_number() && number.is_constant() && number.unit != nullptr &&
-                        number.unit->offset != 0;
-  if (is_point)
-    diagnostics
-        .report(Code::E0301, "RSL cannot calculate with `" + std::string(number.unit->spelling) +
-                                 "`, only compare it")
-        .label(number.span)
-        .helps("write the temperature in `C` (Celsius)");
-  return is_point;
-}
-
 void make_difference(Typed& number) {
-  if (!number.is_constant() || number.unit == nullptr || number.unit->offset == 0 ||
-      number.digits.empty())
-    return;
-  Unit unit = *number.unit;
-  unit.offset = 0;
-  const vm::Value value = to_value(number.bare, unit).value_or(number.code.constant);
+  if (!is_point(number) || !is_literal(number) || !number.is_constant()) return;
+  number.unit = &difference_unit(*number.unit);
+  const vm::Value value = to_value(number.bare, *number.unit).value_or(number.code.constant);
   number.code.constant = value;
   number.low = value;
   number.high = value;
+}
+
+// ---- temperatures in F: their scale has an offset, which a difference of two of them does not have
+
+bool is_point(const Typed& number) {
+  return number.is_number() && number.unit != nullptr && number.unit->offset != 0;
+}
+
+bool is_difference(const Typed& number) {
+  return number.is_number() && number.unit != nullptr && is_of_differences(*number.unit);
+}
+
+bool report_point(const Typed& number, Diagnostics& diagnostics) {
+  if (!is_point(number)) return false;
+  const std::string unit(number.unit->spelling);
+  diagnostics.report(Code::E0301, "RSL cannot calculate this with a temperature in `" + unit + "`")
+      .label(number.span)
+      .helps("compare it, or add and subtract a difference such as `5" + unit +
+             "`; to calculate, measure in `C` (Celsius)");
+  return true;
+}
+
+namespace {
+
+void report_scales(const Typed& number, const std::string& message, Diagnostics& diagnostics) {
+  diagnostics.report(Code::E0301, message)
+      .label(number.span)
+      .helps("measure in `C` (Celsius), where both are the same");
+}
+
+const Unit* report_sum(const Typed& left, const Typed& right, std::string_view doing,
+                       Diagnostics& diagnostics) {
+  const auto phrase = [](const Typed& side) {
+    return is_difference(side) ? "a difference of temperatures" : "a temperature";
+  };
+  report_scales(right, fill_in(doing, phrase(left), phrase(right)), diagnostics);
+  return nullptr;
+}
+
+}  // namespace
+
+bool fits_scale(Typed& number, const Wanted& wanted, Diagnostics& diagnostics) {
+  if (wanted.difference) make_difference(number);
+  const bool wrong =
+      wanted.difference ? is_point(number) : wanted.unit->offset != 0 && is_difference(number);
+  if (!wrong) return true;
+  const std::string needed = wanted.difference ? "a difference of temperatures" : "a temperature";
+  const std::string given = wanted.difference ? "a temperature" : "a difference of temperatures";
+  report_scales(number, "`" + wanted.source + "` is " + needed + ", but this is " + given,
+                diagnostics);
+  return false;
+}
+
+bool unify_scales(Typed& left, Typed& right, std::string_view doing, Diagnostics& diagnostics) {
+  if (is_difference(left)) make_difference(right);
+  if (is_difference(right)) make_difference(left);
+  const bool differ =
+      (is_difference(left) && is_point(right)) || (is_point(left) && is_difference(right));
+  return !differ || report_sum(left, right, doing, diagnostics) != nullptr;
+}
+
+const Unit* unify_sum(Typed& left, Typed& right, bool subtracts, std::string_view doing,
+                      Diagnostics& diagnostics) {
+  make_difference(right);
+  if (!subtracts && is_point(right)) make_difference(left);
+  const bool left_point = is_point(left);
+  const bool right_point = is_point(right);
+  if (left_point && right_point)
+    return !subtracts && report_point(right, diagnostics) ? nullptr : &difference_unit(*left.unit);
+  if (right_point && is_difference(left))
+    return subtracts ? report_sum(left, right, doing, diagnostics) : right.unit;
+  // What is in C may be a temperature or a difference: the sum is shown in C, which is right for both.
+  const bool right_in_c = right.unit != nullptr && !right_point && !is_difference(right);
+  const bool left_in_f = left_point || is_difference(left);
+  const bool adds_constant = left_point && right.is_constant();
+  return left_in_f && right_in_c && !adds_constant ? right.unit : left.unit;
 }
 
 }  // namespace robosync::compiler

@@ -78,8 +78,24 @@ void make_difference(Typed& number);
 Diagnostic& report_mismatch(const Typed& left, const Typed& right, std::string_view doing,
                             Diagnostics& diagnostics);
 
-// A literal in F is a point on a scale with an offset: reports that calculations
-// cannot use it. True if it is one.
-[[nodiscard]] bool report_offset_unit(const Typed& number, Diagnostics& diagnostics);
+// ---- a temperature in F is a point on a scale with an offset; a difference of two has no offset
+
+[[nodiscard]] bool is_point(const Typed& number);
+[[nodiscard]] bool is_difference(const Typed& number);
+
+// Reports that this calculation cannot use a point. True if it is one.
+[[nodiscard]] bool report_point(const Typed& number, Diagnostics& diagnostics);
+
+// False, and reported, if a difference is wanted and this is a point, or the other way round. A literal becomes a difference.
+[[nodiscard]] bool fits_scale(Typed& number, const Wanted& wanted, Diagnostics& diagnostics);
+
+// A comparison: two points or two differences. A literal becomes what the other side is.
+[[nodiscard]] bool unify_scales(Typed& left, Typed& right, std::string_view doing,
+                                Diagnostics& diagnostics);
+
+// The unit of a sum or difference of two numbers of one dimension: a point and a difference make a point, two points only a
+// difference. A literal is a difference, except in front of a minus. nullptr: reported.
+[[nodiscard]] const Unit* unify_sum(Typed& left, Typed& right, bool subtracts,
+                                    std::string_view doing, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

@@ -17,7 +17,8 @@ ir::Rule Rules::translate(const ast::Rule& rule, bool inside) {
 void Rules::translate(const ast::Rule& rule, const ast::WhenRule& node, ir::Rule& result) {
   if (node.condition) {
     Typed condition = expressions_.condition(*node.condition, rule.modifiers.margin.get());
-    if (node.else_block && condition.type == Type::condition)
+    if (node.else_block && condition.type == Type::condition &&
+        !lint_sides(*node.condition, condition.code, diagnostics_))
       lint_start(rule, node, names_, condition, sources_, diagnostics_);
     result.condition = std::move(condition.code);
   }

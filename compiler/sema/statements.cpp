@@ -222,7 +222,34 @@ bool is_bounded(const ir::Repeat& loop) {
 
 }  // namespace
 
+// Each ELSE IF is an IF in the ELSE of the one before, so it is one level deeper.
+std::size_t Statements::else_ifs_of(const ast::If& node) {
+  std::size_t count = 0;
+  for (const ast::If* last = &node; last->else_block.size() == 1; ++count) {
+    last = std::get_if<ast::If>(&last->else_block.front().node);
+    if (last == nullptr) break;
+  }
+  return count;
+}
+
+bool Statements::has_room_for(const ast::If& node, Span span) {
+  const std::size_t room = vm::kMaxBlocks - std::min<std::size_t>(depth_ + 1, vm::kMaxBlocks);
+  const std::size_t count = else_ifs_of(node);
+  if (room == 0 || count <= room) return true;
+  diagnostics_
+      .report(Code::E0407, "this IF has " + std::to_string(count) + " ELSE IFs; " +
+                               (depth_ > 1 ? "inside other blocks, " : "") +
+                               "an IF can have at most " + std::to_string(room) +
+                               (depth_ > 1 ? " here" : ""))
+      .label(span)
+      .helps(
+          "split it: an IF with one half of them on its DO side and the other half on its ELSE "
+          "side");
+  return false;
+}
+
 void Statements::add(const ast::If& node, Span span, ir::Block& result) {
+  if (!has_room_for(node, span)) return;
   ir::If choice;
   Typed condition = node.condition ? expressions_.condition(*node.condition) : Typed{};
   choice.condition = std::move(condition.code);

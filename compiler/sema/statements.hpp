@@ -65,6 +65,8 @@ private:
   void halt(const ast::Stop& node, Span span, ir::Block& result);
   void stop_given(const Binding& binding, const ast::Name& name, Span span, ir::Block& result);
   void stop_actuator(const ast::Name& name, Span span, ir::Block& result);
+  static std::size_t else_ifs_of(const ast::If& node);
+  bool has_room_for(const ast::If& node, Span span);
   void add(const ast::If& node, Span span, ir::Block& result);
   void add(const ast::Repeat& node, Span span, ir::Block& result);
   void add(const ast::PickOne& node, Span span, ir::Block& result);
@@ -98,7 +100,8 @@ private:
   std::optional<ChosenItem> chosen_item(const ListChoice& choice, Span span, ir::Block& result);
   std::optional<ListChoice> in_turn(const ast::Name& how, const ast::Name& list, bool surely);
   void choose(const ListChoice& choice, Span span, const PutText& put_text, ir::Block& result);
-  Expression item_index(const ListName& list, Typed index, Span span, ir::Block& result);
+  Expression item_index(const ListName& list, Typed index, bool is_text, Span span,
+                        ir::Block& result);
   Expression next_index(const ListChoice& choice, Span span, ir::Block& result);
   Expression any_index(const ListChoice& choice, Span span, ir::Block& result);
   using PutItem = std::function<void(std::size_t, ir::Block&)>;

@@ -55,6 +55,7 @@ void Variables::declare(const ast::Remember& node, VariableName& name, ir::Varia
   const auto value = expressions_.constant(*node.value, "the first value of a REMEMBER");
   if (!value) return;
   result.initial = value->code.constant;
+  if (name.kind == vm::VariableKind::plain && !names_.is_set(name)) name.fixed = result.initial;
   if (value->is_bare()) return;
   name.unit = value->unit;
   name.unit_span = value->unit_span;

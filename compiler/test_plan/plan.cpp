@@ -199,6 +199,12 @@ private:
     return std::nullopt;
   }
 
+  static bool has_text(const ast::Command& command) {
+    return std::ranges::any_of(command.arguments, [](const ast::Argument& argument) {
+      return std::holds_alternative<ast::Text>(argument.value);
+    });
+  }
+
   void add(const ast::ExpectCommand& node, Span span) {
     const bool stopped = ascii::same(node.command.verb.text, kStopped);
     if (node.within == nullptr && !stopped) {
@@ -231,7 +237,8 @@ private:
                                command.verb.name,
                                command.word ? std::optional(command.word->name) : std::nullopt,
                                std::move(command.arguments),
-                               times};
+                               times,
+                               has_text(node.command)};
       const bool one_moment = std::ranges::none_of(
           expected.arguments,
           [](const ir::Argument& argument) { return looks_back(argument.value); });

@@ -37,6 +37,7 @@ struct ExpectedCommand {
   std::optional<std::string> word;      // nullopt: any
   std::vector<ir::Argument> arguments;  // only those that are written are compared
   std::optional<std::uint32_t> times;   // exactly this often; nullopt: at least once
+  bool is_text = false;                 // the word is a text: upper and lower case differ
 };
 // Text that LOG or ALERT wrote. Anything may follow these words.
 struct ExpectedText {

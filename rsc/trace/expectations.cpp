@@ -195,7 +195,9 @@ private:
   }
 
   static bool is_word(const EventReader& reader, const ExpectedCommand& expected) {
-    return !expected.word || compiler::ascii::same(reader.word_name().value_or(""), *expected.word);
+    if (!expected.word) return true;
+    const std::string word = reader.word_name().value_or("");
+    return expected.is_text ? word == *expected.word : compiler::ascii::same(word, *expected.word);
   }
 
   bool is_command(const link::Event& event, const Playback& playback, const std::string& actuator,

@@ -82,7 +82,8 @@ void add_compile(Options& options) {
   auto asked = std::make_shared<OutputOptions>();
   options.argument("FILE", asked->file, "program (.rsl)", Options::Need::required);
   options.option("-o,--output", "X.rsb", asked->output, "the image; else STEM.rsb");
-  options.flag("--strip", asked->strip, "leave the source lines out");
+  options.flag("--strip", asked->strip,
+               "leave out the table of source lines; each rule keeps its line");
   options.flag("--anyway", asked->anyway, "even if it is too much for the board in robot.json");
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);

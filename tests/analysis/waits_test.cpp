@@ -123,6 +123,23 @@ TEST_CASE("what a WAIT for a variable takes at least: of all that it may be") {
   CHECK(periods_of("REMEMBER p = 0s", "SET p TO 5s\nWAIT 3s\nWAIT p") == Periods{3000, 3001});
 }
 
+TEST_CASE("a TIMER is always known, and never below 0") {
+  CHECK(periods_of("TIMER t", "WAIT MAX(1s, t)") == Periods{1000});
+  CHECK(periods_of("TIMER t", "WAIT t + 1s") == Periods{1000});
+  CHECK(periods_of("TIMER t", "WAIT t * 2") == Periods{1});
+  CHECK(check("TIMER t\n" + three_states("WAIT t + 1s")).exit == 0);
+}
+
+TEST_CASE("check: a program that reads no sensor is not told to give one a lower rate") {
+  std::string text;
+  for (int i = 0; i < 60; ++i)
+    text += "EVERY 1ms DO LOG \"busy\", RANDOM(0, 5) * RANDOM(0, 5)\nEND\n";
+  const test::Outcome refused = check(text);
+  CHECK(refused.exit == 1);
+  CHECK_THAT(refused.err, Contains("error[E0412]") &&
+                              Contains("let rules run less often, or make") && !Contains("sensor"));
+}
+
 TEST_CASE("what may be over at once comes as seldom as all that waits on the way to it again") {
   const std::string none = "REMEMBER p = 0s";
   CHECK(periods_of(none, "WAIT 1s\nWAIT p") == Periods{1000, 1001});

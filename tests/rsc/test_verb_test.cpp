@@ -492,6 +492,22 @@ TEST_CASE("an empty text is said in no time, and a TEST tells it from other text
   CHECK_THAT(failed.out, Contains("SAY at 2.000 s: \"\"; expected Two"));
 }
 
+TEST_CASE("a TEST tells upper from lower case in a text, not in a word of a device") {
+  const TestFolder robot("");
+  const std::string program =
+      "EVERY 2s DO\n  SAY \"Hello Ann\"\n  MOVE left_arm TO 20deg SLOWLY\nEND\n";
+  const auto tested = [&](const std::string& expected) {
+    return test::rsc(
+        {"test", robot.write("t.rsl", program + "TEST \"case\"\n" + expected + "END\n")});
+  };
+  CHECK(tested("  EXPECT SAY \"Hello Ann\" WITHIN 2s\n").exit == 0);
+  CHECK(tested("  EXPECT NO SAY \"hello ann\" WITHIN 2s\n").exit == 0);
+  CHECK(tested("  EXPECT MOVE left_arm slowly WITHIN 2s\n").exit == 0);
+  const Outcome failed = tested("  EXPECT SAY \"hello Ann\" WITHIN 2s\n");
+  CHECK(failed.exit == 1);
+  CHECK_THAT(failed.out, Contains("SAY at 2.000 s: Hello Ann; expected hello Ann"));
+}
+
 // Half a degree or a radian further on would be another whole number.
 TEST_CASE("ROUND makes whole what robot.json measures in F and rad, at every level of optimising") {
   const Folder folder;
@@ -522,5 +538,50 @@ TEST_CASE("ROUND makes whole what robot.json measures in F and rad, at every lev
                Contains("log: at 98F -2rad\n") && !Contains("log: yes"));
     CHECK_THAT(logged("0.6F", "-0.4rad"), Contains("log: at 1F 0rad\n"));
     CHECK_THAT(logged("-3.6F", "1rad"), Contains("log: at -4F\n"));
+  }
+}
+
+TEST_CASE("a difference of temperatures in F has no 32 in it, at every level of optimising") {
+  const Folder folder;
+  folder.write("robot.json", R"({"sensors": [
+      {"name": "inside", "type": "VIRTUAL", "channels": {"T": {"unit": "F", "range": [0, 120]}}},
+      {"name": "outside", "type": "VIRTUAL", "channels": {"T": {"unit": "F", "range": [0, 120]}}}],
+      "actuators": [{"name": "sound", "type": "VIRTUAL", "device": "speaker"}]})");
+  const std::string program = folder.write(
+      "robot.rsl",
+      "REMEMBER z = 50F\nWHEN inside > outside + 5F\nDO\n"
+      "  SAY \"it is\", inside, \"that is\", inside - outside, \"more\"\n  RAISE z BY 9F\n"
+      "  LOG z, outside + 5, outside + 5F, inside + (outside - inside) / 2, ABS(outside - inside) "
+      "* 2\n"
+      "END\nWHEN ABS(inside - outside) > 10F\nDO LOG \"never\"\nEND\n"
+      "TEST \"nine\"\n  AT 0s outside = 68F\n  AT 0s inside = 77F\n"
+      "  EXPECT SAY \"it is 77F that is 9F more\" WITHIN 0ms\n"
+      "  EXPECT LOG \"59F 73F 73F 72.5F 18F\" WITHIN 0ms\n  EXPECT NO LOG \"never\" WITHIN 1s\n"
+      "  EXPECT THAT inside - outside = 9F\n  EXPECT THAT inside - outside > 6F\nEND\n");
+  for (const char* const level : {"-O0", "-O1"}) {
+    const Outcome tested = test::rsc({"test", program, level});
+    CAPTURE(level, tested.out, tested.err);
+    CHECK(tested.exit == 0);
+  }
+}
+
+TEST_CASE("an ITEM with an unknown number takes nothing, and the trace says so") {
+  const TestFolder robot("");
+  const std::string program = robot.write(
+      "items.rsl",
+      "LIST w: \"a\", \"b\"\nDEFINE tell WITH what\n  SAY what\nEND\n"
+      "WHEN waved\nDO\n  LOG \"item\", ITEM touch LEVEL OF w\n  tell WITH ITEM touch LEVEL OF w\n"
+      "  LOG \"done\"\nEND\n");
+  const std::string scenario = robot.write("visit.json", R"({"duration": "3s", "stimuli": [
+      {"at": "1s", "sensor": "waved", "value": true}, {"at": "1500ms", "sensor": "waved", "value": false},
+      {"at": "2s", "sensor": "touch", "channel": "LEVEL", "value": 2},
+      {"at": "2500ms", "sensor": "waved", "value": true}]})");
+  for (const char* const level : {"-O0", "-O1"}) {
+    const Outcome ran = test::rsc({"run", program, "--scenario", scenario, level});
+    CAPTURE(level, ran.out, ran.err);
+    const std::string nothing = "1.000 s  log: there is no ITEM unknown OF w, which has 2\n";
+    CHECK_THAT(ran.out, Contains(nothing + "   " + nothing + "   1.000 s  log: done\n"));
+    CHECK_THAT(ran.out, Contains("2.500 s  log: item b\n   2.500 s  log: done\n"
+                                 "   2.500 s  sound SAY b\n"));
   }
 }

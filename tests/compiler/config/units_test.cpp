@@ -141,4 +141,17 @@ TEST_CASE("the place of a value in a text is a unit in curly brackets") {
     CHECK(found(none).empty());
   for (const Unit& unit : units())
     CHECK(found(place_for(unit)) == place_for(unit) + ">" + std::string(unit.spelling));
+  CHECK(found("{+cm}").empty());
+  CHECK(place_for(difference_unit(*find_unit("cm"))) == "{cm}");
+}
+
+TEST_CASE("a difference of temperatures has no offset") {
+  const Unit& more = difference_unit(*find_unit("F"));
+  CHECK(is_of_differences(more));
+  CHECK_FALSE(is_of_differences(*find_unit("F")));
+  CHECK_FALSE(is_of_differences(difference_unit(*find_unit("C"))));
+  CHECK(to_value({9, 0}, more) == 5000);
+  CHECK(format_value(5000, more) == "9F");
+  CHECK(place_for(more) == "{+F}");
+  CHECK(find_place("by {+F} more")->unit == &more);
 }

@@ -90,3 +90,26 @@ TEST_CASE("every message has a place, and a fix mends what it names", "[golden]"
     }
   }
 }
+
+// `arm` may be one of the arms: the fix would move both.
+TEST_CASE(
+    "a group is never the certain fix of a word that one of its members has, or of the singular") {
+  const auto is_certain = [](const std::string& line, const std::string& groups) {
+    std::string robot = common_robot();
+    const std::string before = R"({"arms": ["left_arm", "right_arm"]})";
+    const Result result = compile_text("AT START DO\n  " + line + "\nEND\n",
+                                       robot.replace(robot.find(before), before.size(), groups));
+    for (const Diagnostic& diagnostic : result.diagnostics.all())
+      if (diagnostic.code == Code::E0501 || diagnostic.code == Code::E0502)
+        return !diagnostic.fixes.empty() &&
+               diagnostic.fixes.front().applicability == Applicability::certain;
+    return false;
+  };
+  const std::string arms = R"({"arms": ["left_arm", "right_arm"]})";
+  CHECK_FALSE(is_certain("MOVE arm TO 30deg", arms));
+  CHECK_FALSE(is_certain("STOP arm", arms));
+  CHECK_FALSE(is_certain("MOVE wing TO 30deg", R"({"wings": ["left_arm", "right_arm"]})"));
+  CHECK_FALSE(is_certain("MOVE lef TO 30deg", R"({"left": ["left_arm", "right_arm"]})"));
+  CHECK(is_certain("MOVE amrs TO 30deg", arms));
+  CHECK(is_certain("MOVE left_amr TO 30deg", arms));
+}

@@ -258,7 +258,8 @@ TEST_CASE("a MARGIN belongs to the comparisons, and NOT turns round what they gi
     CHECK_THAT(margin(one), Contains("  Once true, it stays true until the value is 10cm back past "
                                      "its limit, so that it does not flicker.\n"));
   const std::string each =
-      "  Each comparison in it, once true, stays true until the value is 10cm back past its limit, "
+      "  Each comparison in it with this kind of unit, once true, stays true until the value is "
+      "10cm back past its limit, "
       "so that it does not flicker";
   CHECK_THAT(margin("a < 50cm AND b < 3cm"), Contains(each + ".\n"));
   for (const char* const turned : {"NOT (a < 50cm)", "a < 50cm AND NOT b"})
