@@ -24,16 +24,8 @@ public:
   // Keeps the reading if it is news: the channel was unknown, or the value differs by at least
   // channel.change. Returns the channel's bit if so, to be announced, else 0. The channel is fresh in either case.
   [[nodiscard, gnu::noinline]] ChannelMask post(const Reading& reading, const vm::Channel& channel);
-  void announce(ChannelMask channels) {
-    announce(channels, [] {});
-  }
-  // … and calls `also` under the same lock.
-  template <class Also>
-  [[gnu::always_inline]] void announce(ChannelMask channels, Also also) {
-    const auto lock = kernel_.lock();
-    announced_ |= channels;
-    also();
-  }
+  // For a caller that holds the kernel's lock.
+  void announce(ChannelMask channels) { announced_ |= channels; }
   // Nothing measures the channel any more.
   void forget(unsigned channel);
 

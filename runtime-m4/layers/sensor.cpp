@@ -179,8 +179,8 @@ void SensorLayer::sample(unsigned sensor) {
   if (vm::is_served(wiring.driver)) return serve_chip(sensor);
   ChannelMask news = 0;
   unsigned failed = 0;
-  for (unsigned i = 0; i < wiring.channel_count; ++i) {
-    const auto channel = static_cast<std::uint8_t>(wiring.first_channel + i);
+  std::uint8_t channel = wiring.first_channel;
+  for (unsigned left = wiring.channel_count; left != 0; --left, ++channel) {
     vm::Value value = 0;
     if (sampler_->sample(program_->image, channel, value)) {
       if (!units_[sensor].contact.has_old_result()) news |= publish(channel, value, kernel_.now());
@@ -262,7 +262,9 @@ ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value, kernel::
 // lock it comes too early, when nothing is announced, or too late, when the safety thread, which outranks the step thread, is
 // ready too. In between, a step would begin with a reading that SAFETY has not seen.
 [[gnu::always_inline]] inline void SensorLayer::announce_to_safety(ChannelMask channels) {
-  mailboxes_.announce(channels, [&] { alarm_.ring(channels); });
+  const auto lock = kernel_.lock();
+  mailboxes_.announce(channels);
+  alarm_.ring(channels);
 }
 
 [[gnu::always_inline]] inline void SensorLayer::announce_all(ChannelMask channels) {

@@ -79,7 +79,7 @@ private:
   void note_trip(unsigned number);
   bool has_ever_tripped(unsigned number) const;
   std::span<const vm::Rule> rules() const { return {first_rule_, end_rule_}; }
-  kernel::Time next_look(std::uint32_t tick);
+  kernel::Time next_look();
   const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
 
   kernel::Kernel& kernel_;
