@@ -93,14 +93,14 @@ private:
   std::size_t channels_ = 0;        // of the image: inputs with lower numbers are channels
   const vm::Word* code_ = nullptr;  // of the image, like responses_
   const vm::Response* responses_ = nullptr;
-  // A bit for each number of a rule: Behavior::rule_count is a byte, and the SAFETY rules come first.
-  static constexpr unsigned kBits = 32;
-  std::array<std::atomic<std::uint32_t>, 256 / kBits> ever_tripped_{};
   layers::RuleSet tripped_;
   port::Sandbox sandbox_;
   layers::SafetyRegion::Work* work_ = nullptr;  // the bytecode may write it, output_ and frame_
   std::span<vm::Word> output_;
   vm::Value* frame_ = nullptr;
+  // A bit for each number of a rule: Behavior::rule_count is a byte, and the SAFETY rules come first.
+  static constexpr unsigned kBits = 32;
+  std::array<std::atomic<std::uint32_t>, 256 / kBits> ever_tripped_{};
 };
 
 }  // namespace robosync::safety
