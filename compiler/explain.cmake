@@ -7,6 +7,9 @@ target_sources(robosync_compiler_small PRIVATE
   explain/program_text.cpp
   explain/rules.cpp
   explain/statements.cpp
+  query/completion.cpp
+  query/describe.cpp
+  query/outline.cpp
   query/rename.cpp
   query/walk.cpp
   test_plan/evaluate.cpp
@@ -14,10 +17,7 @@ target_sources(robosync_compiler_small PRIVATE
 target_link_libraries(robosync_compiler_small PRIVATE fmt::fmt)
 target_sources(robosync_compiler PRIVATE
   query/collector.cpp
-  query/completion.cpp
-  query/describe.cpp
   query/expected.cpp
-  query/outline.cpp
   query/symbols.cpp
   query/tokens.cpp)
 target_link_libraries(robosync_compiler PRIVATE fmt::fmt)

@@ -139,7 +139,27 @@ bool Commands::is_given_another(const ast::Command& command) {
   return true;
 }
 
+// `MOVE left arm UP`
+bool Commands::is_torn_name(const ast::Command& command) {
+  for (std::size_t i = 1; i < command.arguments.size(); ++i) {
+    const ast::Word* const front = plain_word(command.arguments[i - 1]);
+    const ast::Word* const back = plain_word(command.arguments[i]);
+    if (front == nullptr || back == nullptr) continue;
+    const auto target =
+        names_.find_target(std::string(front->name.text) + "_" + std::string(back->name.text));
+    if (!target) continue;
+    const Span name{front->name.span.file, front->name.span.begin, back->name.span.end};
+    diagnostics_.report(Code::E0501, "the name of an actuator is one word")
+        .label(name)
+        .helps("did you mean `" + target->name + "`?")
+        .fix(name, target->name, Applicability::likely);
+    return true;
+  }
+  return false;
+}
+
 void Commands::report_no_target(const ast::Command& command, const std::vector<std::size_t>& able) {
+  if (is_torn_name(command)) return;
   const ast::Word* first = first_word(command);
   if (first == nullptr || is_known_word(first->name.text)) {
     Diagnostic& d = diagnostics_
@@ -487,7 +507,12 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     return false;
   }
   if (is_given(result, known->param)) {
-    report_twice(span, "what `" + known->name + "` sets", to.diagnostics);
+    const bool word_first = result.word && result.word->param == known->param;
+    const std::string first = word_first ? result.word->name : spelling(known->param);
+    to.diagnostics
+        .report(Code::E0505,
+                "`" + to.verb.name + "` takes `" + first + "` or `" + known->name + "`, not both")
+        .label(span);
     return false;
   }
   if (known->param == vm::Param::at && known->value > to.actuator.speed_limit) {
@@ -582,7 +607,11 @@ bool Commands::add_text(const Recipient& to, const Given& given, ir::Command& re
   const std::string& text = *given.text;
   const Span span = given.argument->span;
   if (to.verb.texts == Texts::none) {
-    to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
+    Diagnostic& d =
+        to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
+    if (const WordConfig* const word = to.actuator.find_word(text))
+      d.helps("write the word without quotes: `" + word->name + "`")
+          .fix(given.text_span, word->name, Applicability::likely);
     return false;
   }
   if (is_given(result, vm::Param::item) || takes_its_words(result)) {
@@ -617,10 +646,11 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   if (given.values.empty()) return true;
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
-    to.diagnostics
-        .report(Code::E0505, to.actuator.name.shown() + " cannot say numbers: it plays files")
+    const auto says = std::ranges::find(to.actuator.verbs, Texts::any, &VerbConfig::texts);
+    to.diagnostics.report(Code::E0505, "`" + verb + "` plays a file, and cannot say numbers")
         .label(given.text_span)
-        .helps("the device \"speaker\" can: it says any text");
+        .helps(says != to.actuator.verbs.end() ? "to speak, use `" + says->name + "`"
+                                               : "the device \"speaker\" can: it says any text");
     return false;
   }
   if (given.values.size() > vm::kTextParams.size()) {

@@ -7,6 +7,7 @@
 #include <forward_list>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -49,7 +50,8 @@ struct VariableName {
   vm::VariableKind kind = vm::VariableKind::signal;
   std::vector<std::string> labels;  // of state and band
   bool in_module = false;
-  bool taken = false;  // also a sensor's name, which has been reported: no more messages about it
+  bool taken =
+      false;  // its declaration has a mistake, which has been reported: no more messages about it
   // Valid once it has been declared (Variables).
   bool ready = false;
   const Unit* unit = nullptr;
@@ -57,6 +59,11 @@ struct VariableName {
   std::int64_t low = vm::kValueMin;  // its range
   std::int64_t high = vm::kValueMax;
 };
+
+// "there is no variable `x`", the same wherever it is used, so that one message can stand for all.
+inline std::string no_variable(const ast::Name& name) {
+  return "there is no variable " + name.shown();
+}
 
 struct ListName {
   const ast::List* list = nullptr;
@@ -169,11 +176,13 @@ private:
   std::optional<ChannelRef> channel_of_sensor(std::size_t sensor, const ast::Operand& operand);
   bool report_missing(const ast::Operand& operand);
   void report_unknown(const ast::Operand& operand);
+  bool report_known(const ast::Name& name);
 
   const Robot& robot_;
   Diagnostics& diagnostics_;
   bool in_module_ = false;                         // while collecting
   std::map<std::string, Span> claimed_;            // by folded name
+  std::set<std::string> changed_;                  // folded names that a SET has
   std::map<std::string, ConstantName> constants_;  // by folded name
   std::map<std::string, DefineName> defines_;
   std::map<std::string, ListName> lists_;
