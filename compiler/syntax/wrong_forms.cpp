@@ -144,10 +144,12 @@ private:
           .helps("choose another name, with the number at its end: `name2`");
       return;
     }
-    report(Code::E0001, sign ? "a name has only letters, digits and `_`" : "a name is one word",
-           name)
-        .helps("write `" + better + "`")
-        .fix(name, better, Applicability::likely);
+    Diagnostic& d = report(
+        Code::E0001, sign ? "a name has only letters, digits and `_`" : "a name is one word", name);
+    d.helps("write `" + better + "`").fix(name, better, Applicability::likely);
+    if (begins_with(Kinds::DEFINE) && !sign)
+      d.helps(
+          filled("to pass values, write `DEFINE {0} WITH {1}`", {text(first), text(first + 1)}));
   }
 
   // ---- conditions
