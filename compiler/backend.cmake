@@ -99,9 +99,10 @@ target_sources(robosync_compiler PRIVATE
   codegen/tables.cpp
   codegen/verify_image.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# As in the front end, the code that words diagnostics is optimised for size.
+# As in the front end, the code that words diagnostics is optimised for size, and so is what few lines of a program need.
 if(NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
-    sema/whole_commands.cpp
+  set_source_files_properties(sema/behaviors.cpp sema/condition_lints.cpp sema/follow.cpp sema/functions.cpp
+    sema/limits.cpp sema/lists.cpp sema/misread.cpp sema/motions.cpp sema/number_lists.cpp sema/perform.cpp
+    sema/timers.cpp sema/unknown_verbs.cpp sema/variables.cpp sema/whole_commands.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

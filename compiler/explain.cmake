@@ -9,7 +9,6 @@ target_sources(robosync_compiler_small PRIVATE
   explain/statements.cpp
   query/completion.cpp
   query/describe.cpp
-  query/expected.cpp
   query/outline.cpp
   query/rename.cpp
   query/walk.cpp
@@ -18,6 +17,7 @@ target_sources(robosync_compiler_small PRIVATE
 target_link_libraries(robosync_compiler_small PRIVATE fmt::fmt)
 target_sources(robosync_compiler PRIVATE
   query/collector.cpp
+  query/expected.cpp
   query/symbols.cpp
   query/tokens.cpp)
 target_link_libraries(robosync_compiler PRIVATE fmt::fmt)

@@ -66,6 +66,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/parser.cpp
   syntax/reader.cpp
   syntax/repair.cpp
+  syntax/wrong_forms.cpp
   syntax/wording.cpp)
 # Public for the tests, which look at tokens. SYSTEM silences warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
@@ -74,7 +75,7 @@ target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
     diagnostics/render_human.cpp diagnostics/render_json.cpp diagnostics/sarif.cpp diagnostics/snippet.cpp
-    syntax/examples.cpp syntax/foreign_habits.cpp syntax/habits.cpp syntax/lexer_habits.cpp syntax/lost_heads.cpp
-    syntax/misplaced_words.cpp syntax/wording.cpp
+    syntax/examples.cpp syntax/foreign_habits.cpp syntax/format.cpp syntax/habits.cpp syntax/lexer_habits.cpp syntax/lost_heads.cpp
+    syntax/misplaced_words.cpp syntax/wording.cpp syntax/wrong_forms.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

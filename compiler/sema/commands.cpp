@@ -140,6 +140,7 @@ bool Commands::is_given_another(const ast::Command& command) {
 }
 
 void Commands::report_no_target(const ast::Command& command, const std::vector<std::size_t>& able) {
+  if (is_torn_name(command)) return;
   const ast::Word* first = first_word(command);
   if (first == nullptr || is_known_word(first->name.text)) {
     Diagnostic& d = diagnostics_
@@ -165,31 +166,6 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
   did_you_mean(d, first->name.span, first->name.text, candidates);
   names_.doubt_group(d, first->name.text);
   if (d.help.empty()) d.helps("actuators: " + list_names(candidates));
-}
-
-// `TO person DIRECTION`: reports it, because the second word would be read as one of the actuator's.
-bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
-  const ast::Argument& first = command.arguments[place];
-  const auto* const word = std::get_if<ast::Word>(&first.value);
-  const ast::Word* const second =
-      place + 1 < command.arguments.size() ? plain_word(command.arguments[place + 1]) : nullptr;
-  if (first.preposition == ast::Preposition::none || word == nullptr || second == nullptr)
-    return false;
-  const auto sensor = names_.find_sensor(word->name.text);
-  if (!sensor ||
-      std::ranges::none_of(robot_.sensors[*sensor].channels, [&](const ChannelConfig& channel) {
-        return same_name(channel.name.text, second->name.text);
-      }))
-    return false;
-  Span both = word->name.span;
-  both.end = second->name.span.end;
-  const std::string better =
-      "(" + std::string(word->name.text) + " " + std::string(second->name.text) + ")";
-  diagnostics_.report(Code::E0505, "a value of two words needs brackets here")
-      .label(both)
-      .helps("write `" + better + "`")
-      .fix(both, better);
-  return true;
 }
 
 std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Command& command,
@@ -489,7 +465,12 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     return false;
   }
   if (is_given(result, known->param)) {
-    report_twice(span, "what `" + known->name + "` sets", to.diagnostics);
+    const bool word_first = result.word && result.word->param == known->param;
+    const std::string first = word_first ? result.word->name : spelling(known->param);
+    to.diagnostics
+        .report(Code::E0505,
+                "`" + to.verb.name + "` takes `" + first + "` or `" + known->name + "`, not both")
+        .label(span);
     return false;
   }
   if (known->param == vm::Param::at && known->value > to.actuator.speed_limit) {
@@ -585,7 +566,11 @@ bool Commands::add_text(const Recipient& to, const Given& given, ir::Command& re
   const std::string& text = *given.text;
   const Span span = given.argument->span;
   if (to.verb.texts == Texts::none) {
-    to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
+    Diagnostic& d =
+        to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
+    if (const WordConfig* const word = to.actuator.find_word(text))
+      d.helps("write the word without quotes: `" + word->name + "`")
+          .fix(given.text_span, word->name, Applicability::likely);
     return false;
   }
   if (is_given(result, vm::Param::item) || takes_its_words(result)) {
@@ -620,10 +605,11 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   if (given.values.empty()) return true;
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
-    to.diagnostics
-        .report(Code::E0505, to.actuator.name.shown() + " cannot say numbers: it plays files")
+    const auto says = std::ranges::find(to.actuator.verbs, Texts::any, &VerbConfig::texts);
+    to.diagnostics.report(Code::E0505, "`" + verb + "` plays a file, and cannot say numbers")
         .label(given.text_span)
-        .helps("the device \"speaker\" can: it says any text");
+        .helps(says != to.actuator.verbs.end() ? "to speak, use `" + says->name + "`"
+                                               : "the device \"speaker\" can: it says any text");
     return false;
   }
   if (given.values.size() > vm::kTextParams.size()) {

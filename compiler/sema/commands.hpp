@@ -99,6 +99,8 @@ private:
   void report_no_target(const ast::Command& command, const std::vector<std::size_t>& able);
   // Words that are not verbs (unknown_verbs.cpp).
   void report_unknown_verb(const ast::Command& command);
+  bool is_torn_name(const ast::Command& command);
+  void report_run_define(const ast::Command& command, Diagnostic& diagnostic) const;
   bool begins_with_actuator(const ast::Command& command);
   bool calls_define(const ast::Command& command);
   bool is_foreign(const ast::Command& command);

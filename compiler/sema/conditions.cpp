@@ -247,7 +247,12 @@ Expression Expressions::compare(ast::Relation relation, Typed left, Typed right)
 }
 
 Typed Expressions::of(const ast::IsBetween& node, Span span) {
-  Typed value = number(*node.value);
+  Typed value = any(*node.value);
+  if (value.type == Type::word) {
+    report_word(value, "a number", diagnostics_);
+    return make_nothing(span);
+  }
+  value = number_of(std::move(value));
   Typed low = number(*node.low);
   Typed high = number(*node.high);
   if (!value.is_number() || !low.is_number() || !high.is_number()) return make_nothing(span);
@@ -276,7 +281,10 @@ Typed Expressions::of(const ast::Changes& node, Span span) {
   vm::Value least = 0;
   if (node.by != nullptr) {
     if (value.type == Type::word) {
-      report_word(value, "a number", diagnostics_);
+      diagnostics_
+          .report(Code::E0306,
+                  "`" + value.source + "` is a word, and a word `CHANGES` without `BY`")
+          .label(node.by->span);
       return make_nothing(span);
     }
     const Unit& unit = value.unit != nullptr ? *value.unit : canonical_unit(vm::Dimension::number);

@@ -97,11 +97,15 @@ Typed Expressions::operand(const ast::Operand& operand, Span span) {
   const ListName* list =
       names_.find_list(operand.channel ? operand.channel->text : operand.name.text);
   if (list != nullptr && !names_.find_sensor(operand.name.text)) {
+    const bool chooses = operand.channel && !list->numbers;
     diagnostics_
-        .report(Code::E0306, list->list->name.shown() + " is a LIST, but a number is needed")
+        .report(Code::E0306, chooses
+                                 ? "a text from a LIST cannot be used here"
+                                 : list->list->name.shown() + " is a LIST, but a number is needed")
         .label(span)
         .label(list->list->name.span, "the LIST", false)
-        .helps(list->numbers
+        .helps(chooses ? "a command or a LOG can choose one text: write one for each"
+               : list->numbers
                    ? "say which number: `ITEM 1 OF " + std::string(list->list->name.text) + "`"
                    : "it holds texts; `COUNT OF " + std::string(list->list->name.text) +
                          "` is a number");

@@ -95,6 +95,9 @@ public:
   // Reports "`who` is given a number, but an actuator is needed".
   void report_given(const Binding& binding, const ast::Name& name, std::string_view wanted);
 
+  // Its numbers; none after a mistake, which has been reported.
+  const NumberList& numbers_of(const ListName& list);
+
 private:
   // MARGIN while its condition is translated. A bare number takes the unit of the first comparison.
   struct Margin {
@@ -115,7 +118,6 @@ private:
   Typed of(const ast::Function& node, Span span);
   Typed of(const ast::ItemOf& node, Span span);
   Typed of(const ast::CountOf& node, Span span);
-  const NumberList& numbers_of(const ListName& list);
   Typed of_one(Operation operation, const ast::Function& node, Span span);
   Typed of_two(Operation operation, const ast::Function& node, Span span);
   // conditions.cpp: words and truths

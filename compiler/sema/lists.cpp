@@ -53,10 +53,13 @@ std::optional<ListChoice> Statements::in_turn(const ast::Name& how, const ast::N
   ListChoice choice;
   choice.list = expressions_.find_list(list);
   if (choice.list != nullptr && choice.list->numbers) {
-    diagnostics_.report(Code::E0306, list.shown() + " holds numbers, but a text is needed")
-        .label(list.span)
-        .label(choice.list->list->name.span, "the LIST", false)
-        .helps("choose a number by its position: `ITEM 1 OF " + std::string(list.text) + "`");
+    if (!expressions_.numbers_of(*choice.list).values.empty())  // else its mistake is reported
+      diagnostics_
+          .report(Code::E0306,
+                  how.shown() + " chooses a text, but " + list.shown() + " holds numbers")
+          .label(list.span)
+          .label(choice.list->list->name.span, "the LIST", false)
+          .helps("choose a number by its position: `(ITEM 1 OF " + std::string(list.text) + ")`");
     choice.list = nullptr;
   }
   choice.how = folded == "any" ? ListChoice::How::any : ListChoice::How::next;

@@ -58,6 +58,50 @@ bool Commands::is_second_command(const ast::Command& command, std::size_t place)
   return true;
 }
 
+// `MOVE left arm UP`
+bool Commands::is_torn_name(const ast::Command& command) {
+  for (std::size_t i = 1; i < command.arguments.size(); ++i) {
+    const ast::Word* const front = plain_word(command.arguments[i - 1]);
+    const ast::Word* const back = plain_word(command.arguments[i]);
+    if (front == nullptr || back == nullptr) continue;
+    const auto target =
+        names_.find_target(std::string(front->name.text) + "_" + std::string(back->name.text));
+    if (!target) continue;
+    const Span name{front->name.span.file, front->name.span.begin, back->name.span.end};
+    diagnostics_.report(Code::E0501, "the name of an actuator is one word")
+        .label(name)
+        .helps("did you mean `" + target->name + "`?")
+        .fix(name, target->name, Applicability::likely);
+    return true;
+  }
+  return false;
+}
+
+// `TO person DIRECTION`: reports it, because the second word would be read as one of the actuator's.
+bool Commands::lacks_brackets(const ast::Command& command, std::size_t place) {
+  const ast::Argument& first = command.arguments[place];
+  const auto* const word = std::get_if<ast::Word>(&first.value);
+  const ast::Word* const second =
+      place + 1 < command.arguments.size() ? plain_word(command.arguments[place + 1]) : nullptr;
+  if (first.preposition == ast::Preposition::none || word == nullptr || second == nullptr)
+    return false;
+  const auto sensor = names_.find_sensor(word->name.text);
+  if (!sensor ||
+      std::ranges::none_of(robot_.sensors[*sensor].channels, [&](const ChannelConfig& channel) {
+        return same_name(channel.name.text, second->name.text);
+      }))
+    return false;
+  Span both = word->name.span;
+  both.end = second->name.span.end;
+  const std::string better =
+      "(" + std::string(word->name.text) + " " + std::string(second->name.text) + ")";
+  diagnostics_.report(Code::E0505, "a value of two words needs brackets here")
+      .label(both)
+      .helps("write `" + better + "`")
+      .fix(both, better);
+  return true;
+}
+
 // `MOVE head TO 30deg IN 2s`
 bool Commands::is_foreign_preposition(const ast::Command& command, std::size_t place) {
   const ast::Word* const word = plain_word(command.arguments[place]);

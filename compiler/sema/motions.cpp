@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 
@@ -121,9 +122,35 @@ std::optional<vm::Value> Motions::time_of(const ast::MotionRow& row, vm::Value a
   return std::nullopt;
 }
 
+// `AT 300ms -20 deg`
+bool Motions::has_unit_apart(const ast::MotionRow& row) {
+  for (std::size_t i = 1; i < row.keys.size(); ++i) {
+    const ast::Expr* number = row.keys[i - 1].value.get();
+    const auto* const sign = number != nullptr ? std::get_if<ast::Negate>(&number->node) : nullptr;
+    if (sign != nullptr) number = sign->value.get();
+    const ast::Expr* const after = row.keys[i].value.get();
+    if (number == nullptr || after == nullptr) continue;
+    const auto* const quantity = std::get_if<ast::Quantity>(&number->node);
+    const auto* const unit = std::get_if<ast::Operand>(&after->node);
+    if (quantity == nullptr || !quantity->unit.empty() || unit == nullptr ||
+        find_unit(unit->name.text) == nullptr)
+      continue;
+    diagnostics_.report(Code::E0505, "a unit follows its number without a space")
+        .label({after->span.file, row.keys[i - 1].span.begin, after->span.end})
+        .helps("write `" +
+               std::string(sign != nullptr ? "-" : "")
+                   .append(quantity->digits)
+                   .append(unit->name.text) +
+               "`");
+    return true;
+  }
+  return false;
+}
+
 bool Motions::add_row(const ast::Motion& motion, const ast::MotionRow& row,
                       const std::vector<std::vector<std::size_t>>& columns, ir::Motion& result) {
   if (row.keys.size() != columns.size()) {
+    if (has_unit_apart(row)) return false;
     const auto counted = [](std::size_t count, const std::string& what) {
       return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
     };

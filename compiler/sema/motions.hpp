@@ -40,6 +40,7 @@ private:
                    ir::Motion& result);
   bool can_move(std::size_t actuator, const ast::Name& column);
   std::optional<vm::Value> time_of(const ast::MotionRow& row, vm::Value after);
+  bool has_unit_apart(const ast::MotionRow& row);
   bool add_row(const ast::Motion& motion, const ast::MotionRow& row,
                const std::vector<std::vector<std::size_t>>& columns, ir::Motion& result);
   bool add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track);

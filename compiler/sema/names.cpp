@@ -22,6 +22,15 @@ std::vector<std::string> channel_names(const SensorConfig& sensor) {
   return names;
 }
 
+// Words of RSL where only a name is possible.
+struct WordAsName {
+  std::string_view word, help;
+};
+constexpr WordAsName kWordsAsNames[] = {
+    {"START", "to act once at the beginning, write `AT START`"},
+    {"RANDOM", "`RANDOM` takes two numbers: `RANDOM(1, 6)`"},
+};
+
 vm::VariableKind remembered_as(const ast::Remember& variable) {
   return variable.kept ? vm::VariableKind::kept : vm::VariableKind::plain;
 }
@@ -67,6 +76,18 @@ std::optional<ChannelRef> Names::channel_of_sensor(std::size_t sensor,
   }
   if (const auto channel = own_channels_[sensor].find(operand.channel->text))
     return ChannelRef{sensor, *channel};
+  for (const ChannelConfig& channel : config.channels) {
+    if (!find_label(channel.labels, operand.channel->text)) continue;
+    const std::string shown =
+        config.channels.size() == 1 ? config.name.text : config.name.text + " " + channel.name.text;
+    const Span word = operand.channel->span;
+    diagnostics_.report(Code::E0501, "`IS` is missing before " + operand.channel->shown())
+        .label(word)
+        .helps("write `" + shown + " IS " + std::string(operand.channel->text) + "`")
+        .fix({word.file, operand.name.span.begin, word.end},
+             shown + " IS " + std::string(operand.channel->text), Applicability::likely);
+    return std::nullopt;
+  }
   Diagnostic& d = diagnostics_
                       .report(Code::E0501, "the sensor " + config.name.shown() +
                                                " has no channel " + operand.channel->shown())
@@ -103,11 +124,37 @@ bool Names::report_missing(const ast::Operand& operand) {
   return false;
 }
 
+// A name that is no sensor, but is something else, or shall be.
+bool Names::report_known(const ast::Name& name) {
+  if (find_variable(name.text) != nullptr || find_constant(name.text) != nullptr) {
+    diagnostics_
+        .report(Code::E0501,
+                name.shown() + " is " + kind_of(name.text) + ", but a step of a TEST sets a sensor")
+        .label(name.span)
+        .helps("to check it, write `EXPECT THAT " + std::string(name.text) + " = …`");
+    return true;
+  }
+  if (!set_.contains(fold_name(name.text))) return false;
+  // The same message as for the SET: they become one.
+  Diagnostic& d = diagnostics_.report(Code::E0501, no_variable(name)).label(name.span);
+  if (diagnostics_.may_search(variables_.size()))
+    did_you_mean(d, name.span, name.text, variable_names());
+  if (d.help.empty())
+    d.helps("declare it at the top: `REMEMBER " + std::string(name.text) + " = 0`");
+  return true;
+}
+
 void Names::report_unknown(const ast::Operand& operand) {
   if (report_missing(operand)) return;
+  if (!operand.channel && report_known(operand.name)) return;
   const std::string what = operand.channel ? "sensor " : "sensor, LET or variable called ";
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.shown())
                       .label(operand.name.span);
+  for (const WordAsName& one : kWordsAsNames)
+    if (!operand.channel && same_name(one.word, operand.name.text)) {
+      d.helps(std::string(one.help));
+      return;
+    }
   if (const FunctionName* const function = find_function(operand.name.text);
       function != nullptr && operand.channel) {
     d.helps("write `" + std::string(function->name) + "(…)`: its number goes in brackets");

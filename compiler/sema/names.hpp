@@ -50,7 +50,8 @@ struct VariableName {
   vm::VariableKind kind = vm::VariableKind::signal;
   std::vector<std::string> labels;  // of state and band
   bool in_module = false;
-  bool taken = false;  // also a sensor's name, which has been reported: no more messages about it
+  // Its declaration has a mistake, which has been reported: no more messages about it.
+  bool taken = false;
   bool heard = false;  // a condition asks for this signal
   // Valid once it has been declared (Variables).
   bool ready = false;
@@ -60,6 +61,11 @@ struct VariableName {
   std::int64_t high = vm::kValueMax;
   std::optional<vm::Value> fixed{};  // its value, if it is a REMEMBER that nothing sets
 };
+
+// "there is no variable `x`", the same wherever it is used, so that one message can stand for all.
+inline std::string no_variable(const ast::Name& name) {
+  return "there is no variable " + name.shown();
+}
 
 struct ListName {
   const ast::List* list = nullptr;
@@ -177,6 +183,7 @@ private:
   std::optional<ChannelRef> channel_of_sensor(std::size_t sensor, const ast::Operand& operand);
   bool report_missing(const ast::Operand& operand);
   void report_unknown(const ast::Operand& operand);
+  bool report_known(const ast::Name& name);
 
   const Robot& robot_;
   Diagnostics& diagnostics_;

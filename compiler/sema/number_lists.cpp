@@ -53,6 +53,7 @@ const NumberList& Expressions::numbers_of(const ListName& list) {
   bool good = true;
   for (const ast::Argument& item : list.list->items) {
     const auto* amount = std::get_if<ast::Amount>(&item.value);
+    if (amount == nullptr) good = false;  // a text, which has been reported
     if (amount == nullptr || amount->value == nullptr) continue;
     if (lacks_quotes(*amount->value)) {
       good = false;
@@ -60,7 +61,8 @@ const NumberList& Expressions::numbers_of(const ListName& list) {
     }
     if (numbers.unit == nullptr) {
       const Typed first = number(*amount->value);
-      if (!(good = first.is_number())) break;
+      good = good && first.is_number();
+      if (!first.is_number()) break;
       numbers.unit = first.unit != nullptr ? first.unit : &canonical_unit(vm::Dimension::number);
     }
     const auto value = constant_amount(
@@ -83,6 +85,10 @@ std::optional<std::size_t> Expressions::known_item(const ListName& list, const T
   if (value % vm::kScale == 0 && value >= vm::kScale &&
       value <= static_cast<vm::Value>(count) * vm::kScale)
     return static_cast<std::size_t>(value / vm::kScale - 1);
+  if (value % vm::kScale != 0) {
+    diagnostics_.report(Code::E0509, "a position in a LIST is a whole number").label(index.span);
+    return std::nullopt;
+  }
   diagnostics_
       .report(Code::E0509, list.list->name.shown() + " has the " +
                                (list.numbers ? "numbers" : "texts") + " 1 to " +

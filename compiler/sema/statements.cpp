@@ -146,6 +146,13 @@ Typed Statements::asked_again(const ast::Expr& condition) {
 
 void Statements::add(const ast::WaitUntil& node, Span span, ir::Block& result) {
   if (node.condition == nullptr) return;
+  if (const auto* time = std::get_if<ast::Quantity>(&node.condition->node)) {
+    diagnostics_.report(Code::E0302, "`WAIT UNTIL` takes a condition, but this is a number")
+        .label(node.condition->span)
+        .helps("to wait for a time, write `WAIT " + std::string(time->digits) +
+               std::string(time->unit.empty() ? "s" : time->unit) + "`");
+    return;
+  }
   ir::WaitUntil wait;
   Typed condition = asked_again(*node.condition);
   bool good = condition.type == Type::condition;
@@ -401,8 +408,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
           .helps("only a REMEMBER, STATE or FEELING can be set");
       return nullptr;
     }
-    Diagnostic& d =
-        diagnostics_.report(Code::E0501, "there is no variable " + name.shown()).label(name.span);
+    Diagnostic& d = diagnostics_.report(Code::E0501, no_variable(name)).label(name.span);
     if (diagnostics_.may_search(names_.variables().size()))
       did_you_mean(d, name.span, name.text, names_.variable_names());
     if (d.help.empty()) d.helps("declare it at the top: `" + declaration_of(name, value) + "`");

@@ -34,7 +34,9 @@ bool TextBuilder::add(const ast::Argument& part) {
                                  : nullptr;
     if (binding != nullptr && binding->chosen) return report_second(part.span);
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
-    value = expressions_.number(*amount->value);
+    value = expressions_.any(*amount->value);
+    if (value.type == Type::word) return report_word_shown(value);
+    value = expressions_.number_of(std::move(value));
   } else if (const auto* word = std::get_if<ast::Word>(&part.value)) {
     const Binding* binding = expressions_.find_binding(word->name.text);
     if (binding != nullptr && binding->chosen) return report_second(part.span);
@@ -46,10 +48,20 @@ bool TextBuilder::add(const ast::Argument& part) {
   return true;
 }
 
+// `LOG mood`
+bool TextBuilder::report_word_shown(const Typed& word) {
+  diagnostics_.report(Code::E0306, "`" + word.source + "` is a word, and a text shows only numbers")
+      .label(word.span)
+      .helps("write an IF with a text for each word: `IF " + word.source + " IS " +
+             word.labels->front() + "`");
+  return false;
+}
+
 // Statements has already replaced the first one.
 bool TextBuilder::report_second(Span span) {
   diagnostics_.report(Code::E0505, "a statement can use only one text from a LIST")
-      .label(span, "this is a second one");
+      .label(span, "this is a second one")
+      .helps("write a statement for each");
   return false;
 }
 

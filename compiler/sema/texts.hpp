@@ -27,6 +27,7 @@ public:
 private:
   void append(std::string_view part);
   bool report_second(Span span);
+  bool report_word_shown(const Typed& word);
 
   Expressions& expressions_;
   Diagnostics& diagnostics_;

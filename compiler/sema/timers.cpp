@@ -81,6 +81,12 @@ Typed Expressions::time_comparison(ast::Relation relation, Typed left, Typed rig
   }
   if (left.code.operation == Operation::elapsed && !reads_time(right.code))
     return make_condition(compared(relation, left.code, std::move(right.code)), span);
+  if (left.code.operation == Operation::elapsed && right.code.operation == Operation::elapsed) {
+    diagnostics_.report(Code::E0513, "two TIMERs cannot be compared with each other")
+        .label(span)
+        .helps("compare each with a time: `idle > 30s`");
+    return make_nothing(span);
+  }
   diagnostics_.report(Code::E0513, "a TIMER must stand alone on one side of a comparison")
       .label(span)
       .helps("calculate on the other side: `idle > 2 * patience`");

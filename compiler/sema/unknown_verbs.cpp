@@ -116,6 +116,28 @@ bool Commands::is_foreign(const ast::Command& command) {
   return false;
 }
 
+// `EXPECT go WITHIN 1s`, `go 3 TIMES`, `go left_arm`
+void Commands::report_run_define(const ast::Command& command, Diagnostic& diagnostic) const {
+  const std::string name(command.verb.text);
+  if (command.arguments.empty()) {
+    diagnostic.message = "a TEST expects a command, but " + command.verb.shown() + " is a DEFINE";
+    diagnostic.helps("write a command that it gives");
+    return;
+  }
+  const ast::Argument& first = command.arguments.front();
+  const auto* const amount = std::get_if<ast::Amount>(&first.value);
+  if (amount != nullptr && amount->times) {
+    diagnostic.message = "a DEFINE takes no `TIMES`";
+    diagnostic.helps("write `REPEAT 3 TIMES`, `" + name + "` and `END`, each on its own line");
+  } else if (first.preposition == ast::Preposition::for_) {
+    diagnostic.message = "a DEFINE takes no `FOR`";
+    diagnostic.helps("say in the DEFINE how long its commands last");
+  } else {
+    diagnostic.helps(command.verb.shown() +
+                     " is a DEFINE: write its values after WITH, separated by commas");
+  }
+}
+
 void Commands::report_unknown_verb(const ast::Command& command) {
   if (begins_with_actuator(command) || calls_define(command) || is_foreign(command)) return;
   const ast::Name& verb = command.verb;
@@ -125,7 +147,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
   if (command.arguments.empty()) d.unknown = verb.text;
   if (names_.find_define(verb.text) != nullptr) {
-    d.helps(verb.shown() + " is a DEFINE: write its values after WITH, separated by commas");
+    report_run_define(command, d);
     return;
   }
   if (!diagnostics_.may_search(robot_.actuators.size() + names_.defines().size())) return;

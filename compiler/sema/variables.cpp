@@ -53,6 +53,7 @@ void Variables::declare(const ast::Remember& node, VariableName& name, ir::Varia
   name.unit_span = node.name.span;
   if (node.value == nullptr) return;
   const auto value = expressions_.constant(*node.value, "the first value of a REMEMBER");
+  name.taken = name.taken || !value;
   if (!value) return;
   result.initial = value->code.constant;
   if (name.kind == vm::VariableKind::plain && !names_.is_set(name)) name.fixed = result.initial;

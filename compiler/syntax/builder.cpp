@@ -116,7 +116,7 @@ ast::Box<ast::Expr> Builder::shallow(ast::Box<ast::Expr> made) {
     report(Code::E0012, "this expression is nested deeper than " +
                             std::to_string(deepest_expression) + " levels, the most that rsc reads")
         .label(made->span)
-        .helps("give parts of it a name with LET");
+        .helps(std::string(kSimplify));
   }
   too_deep_ = true;
   return expr(made->span, ast::Quantity{});
@@ -237,9 +237,10 @@ void Builder::add_part(ast::Behavior& behavior, ast::Item item) {
     const std::string_view text = text_of(item.span);
     const std::string keyword(text.substr(0, text.find_first_of(" \t\r\n")));
     const auto length = static_cast<std::uint32_t>(keyword.size());
-    report(Code::E0010, "`" + keyword + "` cannot be used in a BEHAVIOR")
+    report(Code::E0010,
+           "`" + keyword + "` cannot be used in a BEHAVIOR: only rules and REMEMBER can")
         .label({item.span.file, item.span.begin, item.span.begin + length})
-        .helps("a BEHAVIOR holds rules and REMEMBER; move this before it");
+        .helps("move it above the BEHAVIOR");
     moved_out_.push_back(std::move(item));
   }
 }

@@ -5,6 +5,7 @@
 #include <forward_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,10 @@
 #include "compiler/syntax/token.hpp"
 
 namespace robosync::compiler {
+
+// Help for what is nested too deeply. A LET could hold no sensor.
+inline constexpr std::string_view kSimplify =
+    "SET a variable to part of it in another rule, and use the variable here";
 
 class Builder {
 public:

@@ -211,7 +211,7 @@ private:
                   {Kinds::BEHAVIOR, Kinds::SAFETY, Kinds::CHECK, Kinds::MOTION, Kinds::TEST}) ||
         indentation(tokens_[stop_], source_) <= indentation(tokens_[*block], source_))
       return std::nullopt;
-    const bool counts = is(stop_, Kinds::LET) || is(stop_, Kinds::REMEMBER);
+    const bool counts = is(stop_, Kinds::LET);
     Diagnostic& d = report(Code::E0010, quote(stop_) + " cannot be used inside a response",
                            tokens_[stop_].span);
     d.label(tokens_[*block].span, "this block continues until its `END`", false)

@@ -24,43 +24,17 @@ public:
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (Habits::*)();
     for (const Habit habit :
-         {&Habits::name_of_words, &Habits::kept, &Habits::value_of_text, &Habits::value_of_truth,
-          &Habits::list, &Habits::of, &Habits::timer, &Habits::table, &Habits::band,
-          &Habits::else_if, &Habits::is_number, &Habits::one_of_words, &Habits::words_in_brackets,
-          &Habits::expect, &Habits::random, &Habits::function, &Habits::parameters,
-          &Habits::worked_out, &Habits::outside}) {
+         {&Habits::kept, &Habits::value_of_text, &Habits::value_of_truth, &Habits::list,
+          &Habits::of, &Habits::timer, &Habits::table, &Habits::band, &Habits::else_if,
+          &Habits::is_number, &Habits::one_of_words, &Habits::words_in_brackets, &Habits::expect,
+          &Habits::random, &Habits::function, &Habits::parameters, &Habits::worked_out,
+          &Habits::outside}) {
       if (auto edit = (this->*habit)()) return edit;
     }
     return std::nullopt;
   }
 
 private:
-  // `REMEMBER number of visits = 0`
-  std::optional<Edit> name_of_words() {
-    const std::size_t first = statement_ + 1;
-    const bool counts = begins_with(Kinds::REMEMBER) || begins_with(Kinds::LET);
-    if (!(counts || begins_with(Kinds::STATE)) || (stop_ != first && stop_ != first + 1))
-      return std::nullopt;
-    std::string better;
-    std::size_t at = first;
-    for (; at < end_ && is_word(at); ++at)
-      better += (better.empty() ? "" : "_") + std::string(text(at));
-    if (at < first + 2 || !is(at, counts ? Kinds::EQUAL : Kinds::COLON)) return std::nullopt;
-    const Span name = span(first, at);
-    report(Code::E0001, "a name is one word", name)
-        .helps("write `" + better + "`")
-        .fix(name, better, Applicability::likely);
-    return change(first, at - first, {{Kinds::NAME, name}});
-  }
-  bool is_word(std::size_t at) const {
-    const std::string_view word = text(at);
-    return !word.empty() && !is(at, Kinds::KEPT) && !is(at, Kinds::QUANTITY) &&
-           std::ranges::all_of(word, [](char c) {
-             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-                    (c >= '0' && c <= '9');
-           });
-  }
-
   // `LET x = 3 KEPT`, `REMEMBER x KEPT = 0`
   std::optional<Edit> kept() {
     if (begins_with(Kinds::REMEMBER)) return remember_kept();
@@ -100,6 +74,11 @@ private:
     if (!is(stop_, Kinds::STRING) || !(holds || begins_with(Kinds::SET))) return std::nullopt;
     if (!is(stop_ - 1, holds ? Kinds::EQUAL : Kinds::TO)) return std::nullopt;
     if (!holds && is_word_of_state(stop_ - 2, stop_)) return word_in_quotes();
+    if (!holds && behind_declaration("LIST", text(stop_ - 2))) {
+      report(Code::E0508, quote(stop_ - 2) + " is a LIST, and a LIST never changes",
+             tokens_[stop_ - 2].span);
+      return change(stop_, 1, {missing(Kinds::QUANTITY, stop_)});
+    }
     const std::string what = holds ? "a " + std::string(text(statement_)) + " holds" : "SET takes";
     report(Code::E0306, what + " a number, but this is text", tokens_[stop_].span)
         .helps("for texts to choose from, use a LIST: `LIST words: " + std::string(text(stop_)) +
@@ -427,8 +406,10 @@ private:
           .helps("write `EXPECT " + word + " \"…\"`");
       return change(first + 1, 1, {{Kinds::STRING, tokens_[first + 1].span}});
     }
-    const bool asks =
-        (is_relation(tokens_[stop_].kind) && !is(stop_, Kinds::EQUAL)) || is(stop_, Kinds::IS);
+    const bool asks = is(stop_, Kinds::EQUAL)
+                          ? stop_ <= first + 2 && is(stop_ + 1, Kinds::QUANTITY) &&
+                                text(first).find_first_of("abcdefghijklmnopqrstuvwxyz") == 0
+                          : is_relation(tokens_[stop_].kind) || is(stop_, Kinds::IS);
     if (is(first, Kinds::NAME) && asks) {
       report(Code::E0008, "`THAT` is missing after `EXPECT`", tokens_[begin_].span)
           .helps("write `EXPECT THAT " + text(first, end_) + "`");

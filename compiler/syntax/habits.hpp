@@ -12,6 +12,15 @@
 
 namespace robosync::compiler {
 
+// What a WHEN, a WHILE or an EVERY in a response is meant for, and what to write instead.
+[[nodiscard]] constexpr std::string_view in_response(TokenKind rule) {
+  if (rule == Kinds::WHILE)
+    return "to repeat something here, write `REPEAT WHILE` and the condition, with a `WAIT` in it";
+  if (rule == Kinds::EVERY)
+    return "to repeat something here, write `REPEAT FOREVER`, with a `WAIT` in it";
+  return "to check once while the response runs, write `IF`";
+}
+
 // Habits from other constructs of RSL (habits.cpp) and from other languages (foreign_habits.cpp), and words that mean
 // something else where they are (misplaced_words.cpp).
 // Each reports the habit and returns the change that lets the grammar continue; nothing when it finds none.
@@ -27,5 +36,10 @@ namespace robosync::compiler {
                                                          const SourceFile& source,
                                                          const Attempt& failure,
                                                          Diagnostics& diagnostics);
+
+// Lines in a form that RSL lacks, as beginners write them (wrong_forms.cpp).
+[[nodiscard]] std::optional<Edit> explain_wrong_form(const Tokens& tokens, const SourceFile& source,
+                                                     const Attempt& failure,
+                                                     Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

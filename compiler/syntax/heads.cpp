@@ -71,11 +71,20 @@ bool declares(TokenKind first, TokenKind behind) {
   }
 }
 
-// A word that cannot be a name, in lower case: RSL is mostly written in capitals.
-bool is_reserved_name(const Token& token, const SourceFile& source) {
-  if (!is_keyword(token.kind) || (roles_of(token.kind) & role::name) != 0) return false;
+// A word that cannot be a name, in lower case: RSL is mostly written in capitals. The name of a DEFINE begins a line, so it can
+// be no word of RSL at all.
+bool is_reserved_name(const Token& token, bool define, const SourceFile& source) {
+  if (!is_keyword(token.kind) || (!define && (roles_of(token.kind) & role::name) != 0))
+    return false;
   const std::string_view text = source.text(token.span);
   return std::ranges::none_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
+// Where a DEFINE gets its name or is run: `stop` on its own, but not `STOP arms`.
+bool is_line_of_name(const Tokens& tokens, std::size_t at) {
+  return at > 0 && at + 1 < tokens.size() &&
+         is_one_of(tokens[at - 1].kind, {Kinds::DEFINE, Kinds::NEWLINE, Kinds::DO, Kinds::ELSE}) &&
+         is_one_of(tokens[at + 1].kind, {Kinds::NEWLINE, Kinds::WITH, Kinds::END});
 }
 
 }  // namespace
@@ -83,15 +92,19 @@ bool is_reserved_name(const Token& token, const SourceFile& source) {
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
   for (std::size_t at = 0; at + 2 < tokens.size(); ++at) {
     const bool declared = starts_line(tokens, at) && declares(tokens[at].kind, tokens[at + 2].kind);
-    if (!declared || !is_reserved_name(tokens[at + 1], source)) continue;
+    const bool define = tokens[at].kind == Kinds::DEFINE;
+    if (!declared || !is_reserved_name(tokens[at + 1], define, source)) continue;
     const Token name = tokens[at + 1];
     const std::string_view word = source.text(name.span);
     diagnostics
         .report(Code::E0010, "`" + std::string(word) + "` is a word of RSL and cannot be a name")
         .label(name.span, "choose another name");
     // It is a name from here on, so no line can declare it again: this loop runs at most once per word of RSL.
-    for (Token& token : tokens)
-      if (token.kind == name.kind && source.text(token.span) == word) token.kind = Kinds::NAME;
+    const bool everywhere = (roles_of(name.kind) & role::name) == 0;
+    for (std::size_t use = 0; use < tokens.size(); ++use)
+      if (tokens[use].kind == name.kind && source.text(tokens[use].span) == word &&
+          (everywhere || is_line_of_name(tokens, use)))
+        tokens[use].kind = Kinds::NAME;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
@@ -84,13 +85,26 @@ private:
     const bool outside = walk_.open().empty();
     if ((roles & role::item) != 0) {
       const bool indented = indentation(tokens_[at], source_) > indentation_;
-      return outside || !indented;
+      return outside || !(indented || is_in_behavior(at));
     }
     if (!outside) return false;
     if ((roles & role::part) != 0) return !damaged_;
     // Neither: the mistake is on this line, and the following lines may belong to it.
     damaged_ = true;
     return false;
+  }
+
+  // Without indentation, an item belongs to the open BEHAVIOR if an END further down closes that.
+  bool is_in_behavior(std::size_t at) {
+    const std::size_t opener = walk_.open().front();
+    if (walk_.open().size() != 1 || tokens_[opener].kind != Kinds::BEHAVIOR) return false;
+    if (checked_ == opener) return closed_;
+    checked_ = opener;
+    constexpr std::size_t farthest = 4000;  // tokens: a BEHAVIOR is shorter
+    BlockWalk rest = walk_;
+    for (; at < tokens_.size() && at < opener + farthest && !rest.open().empty(); ++at)
+      rest.step(at);
+    return closed_ = rest.open().empty();
   }
 
   void start_region(std::size_t at) {
@@ -108,6 +122,8 @@ private:
   std::size_t begin_ = 0;
   std::size_t indentation_ = 0;
   bool damaged_ = false;
+  std::size_t checked_ = SIZE_MAX;  // the BEHAVIOR that is_in_behavior() has followed to its end …
+  bool closed_ = false;             // … and whether it found one
 };
 
 }  // namespace

@@ -177,7 +177,7 @@ private:
     report(Code::E0010, quote(stop_) + " cannot be used inside a response", tokens_[stop_].span)
         .label(tokens_[*block].span, "this block continues until its `END`", false)
         .helps("rules follow one another: close the first with `END` before the next begins")
-        .helps("to check once while the response runs, write `IF`");
+        .helps(std::string(in_response(tokens_[stop_].kind)));
     return change(stop_, begins - stop_,
                   {missing(Kinds::IF, stop_), missing(Kinds::QUANTITY, stop_),
                    missing(Kinds::LESS, stop_), missing(Kinds::QUANTITY, stop_)});

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "compiler/diagnostics/plain_text.hpp"
+#include "compiler/syntax/builder.hpp"
 #include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/heads.hpp"
 #include "compiler/syntax/layout.hpp"
@@ -143,17 +145,19 @@ private:
   // In a line where the lexer left out a character, anything missing is a consequence.
   void find_strange_lines() {
     for (const Diagnostic& diagnostic : diagnostics_.all())
-      if (diagnostic.code == Code::E0002 && diagnostic.fixes.empty() &&
-          diagnostic.labels.front().span.file == file_ &&
-          diagnostic.message.starts_with(kStrangeCharacter))
-        strange_lines_.push_back(line_of(diagnostic));
+      if (diagnostic.code == Code::E0002 && diagnostic.labels.front().span.file == file_) {
+        strange_places_.insert(diagnostic.labels.front().span.begin);
+        if (diagnostic.fixes.empty() && diagnostic.message.starts_with(kStrangeCharacter))
+          strange_lines_.push_back(line_of(diagnostic));
+      }
   }
   std::size_t line_of(const Diagnostic& diagnostic) const {
     return source_.position(diagnostic.labels.front().span.begin).line;
   }
   bool is_consequence(const Diagnostic& diagnostic) const {
-    return !strange_lines_.empty() && !diagnostic.labels.empty() &&
-           std::ranges::binary_search(strange_lines_, line_of(diagnostic));
+    return !strange_places_.empty() && !diagnostic.labels.empty() &&
+           (strange_places_.contains(diagnostic.labels.front().span.begin) ||
+            std::ranges::binary_search(strange_lines_, line_of(diagnostic)));
   }
 
   // False when nothing more should be read.
@@ -167,7 +171,7 @@ private:
                                         " brackets or signs are open here, the most that rsc reads")
           .label(tokens[deep->at].span)
           .helps(deep->in_blocks ? "put the inner part into a DEFINE of its own"
-                                 : "give parts of it a name with LET");
+                                 : std::string(kSimplify));
       return false;
     }
     if (const auto empty = empty_block(tokens)) {
@@ -237,6 +241,7 @@ private:
   ast::Tree program_;
   Budget budget_;
   std::vector<std::size_t> strange_lines_;
+  std::set<std::uint32_t> strange_places_;  // of signs that RSL does not use
   std::size_t mistakes_ = 0;
 };
 

@@ -81,7 +81,8 @@ Edit last_resort(const Tokens& tokens, const Attempt& failure) {
 
 void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples& examples,
           Diagnostics& diagnostics, Budget& budget) {
-  for (const auto explain_one : {explain_misplaced_word, explain_foreign_habit, explain_habit}) {
+  for (const auto explain_one :
+       {explain_wrong_form, explain_misplaced_word, explain_foreign_habit, explain_habit}) {
     const auto habit = explain_one(tokens, reader.source(), failure, diagnostics);
     if (!habit) continue;
     tokens = edited(tokens, *habit);

@@ -7,6 +7,7 @@
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/foreign_units.hpp"
+#include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 
 namespace robosync::compiler {
@@ -163,6 +164,13 @@ private:
     return span;
   }
 
+  // After the last word before the token, never at the start of a line.
+  Span gap_before(std::size_t at) const {
+    Span span = last_word_before(at);
+    span.begin = span.end;
+    return span;
+  }
+
   void missing() {
     const TokenKind kind = edit_.inserted.front().kind;
     if (kind == Kinds::END) return not_closed(1);
@@ -227,7 +235,8 @@ private:
   void line_goes_on() {
     const bool line_over = edit_.at >= tokens_.size() || tokens_[edit_.at].kind == Kinds::NEWLINE;
     if (line_over) {
-      diagnostics_.report(Code::E0001, "this line ends too early").label(place(edit_.at), "here");
+      diagnostics_.report(Code::E0001, "this line ends too early")
+          .label(gap_before(edit_.at), "here");
       return;
     }
     diagnostics_.report(Code::E0001, found(edit_.at) + " must be on a line of its own")
@@ -303,6 +312,7 @@ private:
     if (number.kind != Kinds::QUANTITY) return false;
     const std::string digits(source_.text(number.span));
     if (digits.empty() || digits.back() < '0' || digits.back() > '9') return false;
+    constexpr std::size_t longest_unit = 4;
     const Span gap{number.span.file, number.span.end, tokens_[edit_.at].span.begin};
     const std::string unit(source_.text(tokens_[edit_.at].span));
     Diagnostic& message =
@@ -320,6 +330,7 @@ private:
                Applicability::likely);
       return true;
     }
+    if (unit.size() > longest_unit) return true;
     message.helps("if it is a unit, write it without a space: `" + digits + unit + "`")
         .fix(gap, "", Applicability::likely);
     return true;
@@ -454,11 +465,17 @@ private:
   void rule_inside() {
     diagnostics_.report(Code::E0010, quote(edit_.at) + " cannot be used inside a response")
         .label(place(edit_.at), "a rule belongs outside, or in a BEHAVIOR")
-        .helps("to check once while the response runs, write `IF`")
+        .helps(std::string(in_response(tokens_[edit_.at].kind)))
         .helps("to start another rule, close the response with `END` first");
   }
 
   void wrong_order() {
+    if (tokens_[edit_.at + 1].kind == Kinds::NEWLINE && is_keyword(tokens_[edit_.at].kind)) {
+      diagnostics_
+          .report(Code::E0010, quote(edit_.at) + " is a word of RSL and cannot be a name here")
+          .label(tokens_[edit_.at].span, "choose another name");
+      return;
+    }
     const Span first = tokens_[edit_.at].span;
     const Span second = tokens_[edit_.at + 1].span;
     diagnostics_

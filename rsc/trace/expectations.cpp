@@ -45,7 +45,7 @@ public:
       }
       if (!expected.no && found == nullptr) {
         const std::string other = elsewhere(matches);
-        return fmt::format("{} was not told to {}{}", actuator, window(),
+        return fmt::format("no `{}` for {} came {}{}", expected.verb, actuator, window(),
                            other.empty() ? nearest(actuator, expected) : other);
       }
     }
@@ -151,8 +151,8 @@ private:
       if (event->time_us >= from_us_ && event->time_us <= until_us_ && matches(*event, playback))
         ++count;
     if (count == *expected.times) return std::nullopt;
-    return fmt::format("{} was told to {} time{} {}, not {}", actuator, count,
-                       count == 1 ? "" : "s", window(), *expected.times);
+    return fmt::format("`{}` came {} time{} for {} {}, not {}", expected.verb, count,
+                       count == 1 ? "" : "s", actuator, window(), *expected.times);
   }
 
   // The command closest to what was expected: with this verb, and in the window if there is one.

@@ -230,7 +230,7 @@ TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
              Contains("FAILED  it bows low\n") &&
                  Contains("robot.rsl:29:3\n 29 |   EXPECT MOVE arms TO 80deg WITHIN 1s\n"
                           "    |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n") &&
-                 Contains("left_arm was not told to from 1.000 s to 2.000 s; at 1.000 s it "
+                 Contains("no `MOVE` for left_arm came from 1.000 s to 2.000 s; at 1.000 s it "
                           "was left_arm MOVE QUICKLY TO 90") &&
                  Contains("1.000 s  touch LEVEL = 5\n") &&
                  Contains("1.000 s  left_arm MOVE QUICKLY TO 90") &&
@@ -241,7 +241,7 @@ TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
 TEST_CASE("what came outside of its window is said with its time") {
   const TestFolder robot(touched("late", "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"));
   CHECK_THAT(test::rsc({"test", robot.program}).out,
-             Contains("left_arm was not told to from 1.100 s to 2.100 s; it was at 1.000 s\n"));
+             Contains("no `MOVE` for left_arm came from 1.100 s to 2.100 s; it was at 1.000 s\n"));
 }
 
 TEST_CASE("the nearest miss is named") {
@@ -259,7 +259,7 @@ TEST_CASE("the nearest miss is named") {
             "it was not written at 2.000 s; it was at 1.000 s\n"},
            {"EXPECT NO LOG \"touched\" WITHIN 1s", "it was written at 1.000 s: touched with 5\n"},
            {"EXPECT 2 TIMES MOVE arms WITHIN 1s",
-            "left_arm was told to 1 time from 1.000 s to 2.000 s, not 2\n"}}) {
+            "`MOVE` came 1 time for left_arm from 1.000 s to 2.000 s, not 2\n"}}) {
     const TestFolder robot(touched("it", step));
     const Outcome outcome = test::rsc({"test", robot.program});
     CHECK(outcome.exit == 1);
