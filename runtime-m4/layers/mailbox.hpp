@@ -25,15 +25,11 @@ public:
   // channel.change. Returns the channel's bit if so, to be announced, else 0. The channel is fresh in either case.
   [[nodiscard, gnu::noinline]] ChannelMask post(const Reading& reading, const vm::Channel& channel);
   void announce(ChannelMask channels) {
-    announce(channels, [] {});
-  }
-  // … and calls `also` under the same lock.
-  template <class Also>
-  [[gnu::always_inline]] void announce(ChannelMask channels, Also also) {
     const auto lock = kernel_.lock();
-    announced_ |= channels;
-    also();
+    announce_locked(channels);
   }
+  // … for a caller that holds the lock.
+  void announce_locked(ChannelMask channels) { announced_ |= channels; }
   // Nothing measures the channel any more.
   void forget(unsigned channel);
 

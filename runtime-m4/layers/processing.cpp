@@ -383,6 +383,11 @@ bool ProcessingLayer::has_sole_turn(unsigned rule, unsigned next, RuleRange rule
   return next >= rules.end && concerned_.has(rule);
 }
 
+inline void ProcessingLayer::await_behavior() {
+  while (layers_.behaviors.busy())
+    if ((kernel_.wait(kFinished | kStopped) & kStopped) != 0) note_stops_at_work();
+}
+
 // A turn that does for this one rule all that take_turn() does for each, without looking for others. It does one
 // thing sooner: a response that may go on runs in the same activation, like one that begins, unless
 // something that the rule has found out ends it.
@@ -542,11 +547,6 @@ void ProcessingLayer::run_response(unsigned rule) {
   }
   await_behavior();
   conclude(rule);
-}
-
-void ProcessingLayer::await_behavior() {
-  while (layers_.behaviors.busy())
-    if ((kernel_.wait(kFinished | kStopped) & kStopped) != 0) note_stops_at_work();
 }
 
 // Another thread was stopped, which may have preempted the behaviour when it had stored that it is finished, but had not made

@@ -170,7 +170,7 @@ private:
   void interrupt(unsigned rule, unsigned by);
   bool goes_on(unsigned rule) const;
   void run_response(unsigned rule);
-  void await_behavior();
+  [[gnu::always_inline]] void await_behavior();
   [[gnu::cold, gnu::noinline]] void note_stops_at_work();
   void conclude(unsigned rule);
   void cancel_interrupted() {

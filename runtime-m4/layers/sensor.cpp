@@ -262,7 +262,9 @@ ChannelMask SensorLayer::publish(std::uint8_t channel, vm::Value value, kernel::
 // lock it comes too early, when nothing is announced, or too late, when the safety thread, which outranks the step thread, is
 // ready too. In between, a step would begin with a reading that SAFETY has not seen.
 [[gnu::always_inline]] inline void SensorLayer::announce_to_safety(ChannelMask channels) {
-  mailboxes_.announce(channels, [&] { alarm_.ring(channels); });
+  const auto lock = kernel_.lock();
+  mailboxes_.announce_locked(channels);
+  alarm_.ring(channels);
 }
 
 [[gnu::always_inline]] inline void SensorLayer::announce_all(ChannelMask channels) {

@@ -59,7 +59,7 @@ kernel::Time SafetyRules::look() {
   do {
     rule = evaluate(*rule);
   } while (rule != end_rule_);
-  return next_look(tick);
+  return next_look();
 }
 
 inline void SafetyRules::latch(std::uint32_t tick) {
@@ -172,15 +172,15 @@ inline unsigned SafetyRules::number_of(const vm::Rule& rule) const {
   return static_cast<unsigned>(&rule - program_->image.rules.data());
 }
 
-// Resets the machine's wake time: no time word is due until one sets it again. The delay counts from `tick`, at which the rules
-// were evaluated; another tick may have come meanwhile.
-kernel::Time SafetyRules::next_look(std::uint32_t tick) {
+// Resets the machine's wake time: no time word is due until one sets it again. The delay counts from the tick at which the rules
+// were evaluated; another one may have come meanwhile.
+kernel::Time SafetyRules::next_look() {
   vm::Machine& machine = work_->machine;
   const std::uint32_t wake = std::exchange(machine.wake, vm::Machine::kNever);
   if (wake == vm::Machine::kNever) return kernel::kForever;
   const std::uint32_t delay = std::max<std::uint32_t>(wake - machine.now, 1);
   const auto still = kernel_.lock();
-  const std::uint32_t passed = std::min(kernel_.tick() - tick, delay);
+  const std::uint32_t passed = std::min(layers_.trace.milliseconds() - machine.now, delay);
   return kernel_.time() + kernel::milliseconds(delay - passed);
 }
 

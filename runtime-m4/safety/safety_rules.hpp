@@ -71,7 +71,7 @@ private:
   [[gnu::cold]] void act(const vm::Output& said, layers::ActuatorMask halted);
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
-  kernel::Time next_look(std::uint32_t tick);
+  kernel::Time next_look();
   const layers::Snapshot& snapshot() const { return layers_.processing.snapshot(); }
 
   kernel::Kernel& kernel_;
