@@ -225,26 +225,32 @@ private:
       return;
     }
     // One command for a group, or one for each of its members.
-    for (ir::Command& command : commands_.translate(node.command)) {
-      if (command.word && find_place(command.word->name)) {
-        diagnostics_.report(Code::E0409, "a TEST compares the whole text that is said")
-            .label(span)
-            .helps("write the final text in quotes: `\"You have 3 points\"`");
-        return;
-      }
-      ExpectedCommand expected{node.no,
-                               actuator_names(command.actuators),
-                               command.verb.name,
-                               command.word ? std::optional(command.word->name) : std::nullopt,
-                               std::move(command.arguments),
-                               times,
-                               has_text(node.command)};
-      const bool one_moment = std::ranges::none_of(
-          expected.arguments,
-          [](const ir::Argument& argument) { return looks_back(argument.value); });
-      if (!one_moment) report_moment(span);
-      if (end && one_moment) expect(span, *end, std::move(expected));
+    for (ir::Command& command : commands_.translate(node.command))
+      if (!add_command(node, command, times, span, end)) return;
+  }
+
+  // False: the message about it stands for all of them.
+  bool add_command(const ast::ExpectCommand& node, ir::Command& command,
+                   std::optional<std::uint32_t> times, Span span, std::optional<Milliseconds> end) {
+    if (command.word && find_place(command.word->name)) {
+      diagnostics_.report(Code::E0409, "a TEST compares the whole text that is said")
+          .label(span)
+          .helps("write the final text in quotes: `\"You have 3 points\"`");
+      return false;
     }
+    ExpectedCommand expected{node.no,
+                             actuator_names(command.actuators),
+                             command.verb.name,
+                             command.word ? std::optional(command.word->name) : std::nullopt,
+                             std::move(command.arguments),
+                             times,
+                             has_text(node.command)};
+    const bool one_moment = std::ranges::none_of(
+        expected.arguments,
+        [](const ir::Argument& argument) { return looks_back(argument.value); });
+    if (!one_moment) report_moment(span);
+    if (end && one_moment) expect(span, *end, std::move(expected));
+    return true;
   }
 
   void add_stop(const ast::ExpectCommand& node, Span span, std::optional<Milliseconds> end) {

@@ -179,8 +179,9 @@ void SensorLayer::sample(unsigned sensor) {
   if (vm::is_served(wiring.driver)) return serve_chip(sensor);
   ChannelMask news = 0;
   unsigned failed = 0;
-  std::uint8_t channel = wiring.first_channel;
-  for (unsigned left = wiring.channel_count; left != 0; --left, ++channel) {
+  const unsigned end = wiring.first_channel + wiring.channel_count;
+  for (unsigned c = wiring.first_channel; c != end; ++c) {
+    const auto channel = static_cast<std::uint8_t>(c);
     vm::Value value = 0;
     if (sampler_->sample(program_->image, channel, value)) {
       if (!units_[sensor].contact.has_old_result()) news |= publish(channel, value, kernel_.now());
