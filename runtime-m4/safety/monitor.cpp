@@ -21,16 +21,19 @@ void Monitor::run() {
   kernel::Time rules_due = kernel::kForever;
   while (true) {
     const kernel::Events why = kernel_.wait(kNews | kProgram | kPerson, std::min(due, rules_due));
-    if (why != kNews) [[unlikely]] {  // a reading alone takes the short way
-      if ((why & kPerson) != 0) supervised_.obey();
-      if ((why & kProgram) != 0) {
-        due = std::min(due, supervised_.began());  // the watchdog does not wait for a program
-        rules_due = kernel::kForever;
-        without_progress_ = 0;
+    bool look = why == kNews;  // a reading alone takes the short way
+    if (!look) {
+      if (why != 0) [[unlikely]] {
+        if ((why & kPerson) != 0) supervised_.obey();
+        if ((why & kProgram) != 0) {
+          due = std::min(due, supervised_.began());  // the watchdog does not wait for a program
+          rules_due = kernel::kForever;
+          without_progress_ = 0;
+        }
       }
+      look = (why & kNews) != 0 || kernel_.now() >= std::min(due, rules_due);
     }
-    if ((why & kNews) != 0 || kernel_.now() >= std::min(due, rules_due))
-      rules_due = supervised_.look_at_rules();
+    if (look) rules_due = supervised_.look_at_rules();
     const kernel::Time now = kernel_.now();
     if (now < due) continue;
     check(now - due);
