@@ -46,7 +46,18 @@ target_sources(robosync_compiler_small PRIVATE
   sema/motions.cpp
   sema/number_lists.cpp
   sema/perform.cpp
-  sema/timers.cpp)
+  sema/timers.cpp
+  sema/behaviors.cpp
+  sema/follow.cpp
+  sema/functions.cpp
+  sema/lists.cpp
+  sema/variables.cpp
+  sema/texts.cpp
+  sema/lints.cpp
+  sema/defines.cpp
+  codegen/records.cpp
+  codegen/tables.cpp
+  codegen/costly_rules.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE
   compiler.cpp
@@ -61,25 +72,17 @@ target_sources(robosync_compiler PRIVATE
   ir/fact.cpp
   ir/program.cpp
   sema/analyze.cpp
-  sema/behaviors.cpp
   sema/commands.cpp
   sema/misread.cpp
   sema/unknown_verbs.cpp
   sema/whole_commands.cpp
   sema/conditions.cpp
   sema/condition_lints.cpp
-  sema/defines.cpp
   sema/expressions.cpp
-  sema/follow.cpp
-  sema/functions.cpp
-  sema/lints.cpp
-  sema/lists.cpp
   sema/names.cpp
   sema/quantities.cpp
   sema/rules.cpp
   sema/statements.cpp
-  sema/texts.cpp
-  sema/variables.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp
   optimize/optimize.cpp
@@ -89,20 +92,15 @@ target_sources(robosync_compiler PRIVATE
   optimize/simplify.cpp
   optimize/variable_facts.cpp
   codegen/code.cpp
-  codegen/costly_rules.cpp
   codegen/expression_emitter.cpp
   codegen/emit.cpp
   codegen/operations.cpp
-  codegen/records.cpp
   codegen/response_emitter.cpp
   codegen/rules.cpp
-  codegen/tables.cpp
   codegen/verify_image.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# As in the front end, the code that words diagnostics is optimised for size, and so is what few lines of a program need.
+# As in the front end, the code that words diagnostics is optimised for size.
 if(NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(sema/behaviors.cpp sema/condition_lints.cpp sema/follow.cpp sema/functions.cpp
-    sema/limits.cpp sema/lists.cpp sema/misread.cpp sema/motions.cpp sema/number_lists.cpp sema/perform.cpp
-    sema/timers.cpp sema/unknown_verbs.cpp sema/variables.cpp sema/whole_commands.cpp
+  set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp sema/whole_commands.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()
