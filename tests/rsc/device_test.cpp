@@ -242,13 +242,14 @@ std::string running_on(const Device& device) {
       .at("hash");
 }
 
-// Ends within three seconds with 3; a busy machine may take a little longer.
+// Ends with 3, soon. Three seconds are tested in virtual time (update/upload_faults_test.cpp); a busy machine takes longer, above all
+// under sanitizers. Without an end to the silence it would be 25 s.
 Outcome fails_soon(const Device& device, const std::vector<std::string>& arguments) {
   const auto start = std::chrono::steady_clock::now();
   Outcome outcome = device.run(arguments);
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit == 3);
-  CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
   return outcome;
 }
 

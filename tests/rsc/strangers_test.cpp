@@ -83,7 +83,7 @@ TEST_CASE("something that sends, but is no RoboSync firmware, is named") {
     const Outcome outcome = test::rsc(arguments);
     CAPTURE(outcome.err);
     CHECK(outcome.exit == 3);
-    CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
     CHECK_THAT(outcome.err,
                Contains("something on " + port + " sends bytes, but not RoboSync's frames (") &&
                    Contains("115,200 baud"));
@@ -102,7 +102,7 @@ TEST_CASE("firmware of another protocol version is named by every verb, also by 
     const Outcome outcome = test::rsc(arguments);
     CAPTURE(arguments.front(), outcome.err);
     CHECK(outcome.exit == 3);
-    CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
     CHECK_THAT(outcome.err, Contains("the firmware speaks version ") &&
                                 Contains("flash the firmware of this release"));
   }
@@ -115,6 +115,6 @@ TEST_CASE("a line that takes no bytes is an error that says so, after two second
   const auto start = std::chrono::steady_clock::now();
   CHECK_THROWS_WITH(transport->write(std::vector<std::byte>(std::size_t{16} << 20)),
                     Contains("full: the line takes no bytes"));
-  CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds(3000));
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
   close(listener);
 }
