@@ -118,15 +118,16 @@ class Owner(Switched):
                 texts[name] = rsc.run(name, "--port", line.port, *words).encode()
         self.await_kept("kept")
         self.board.stop()
-        store = self.file.read_bytes()
+        file = self.folder / "store"
+        store = file.read_bytes()
         seed = store[store.index(b"RSO1") + 40:][:16]  # KeyStore::Record: magic, number, public key, seed
         self.assertNotIn(seed, (bytes(16), b"\xff" * 16))
         self.assertTrue(shows(key_file.read_bytes(), key))  # the search finds what is there
         places = {**{str(path): path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}, **texts,
                   "to the board": contents(line.heard), "from the board": contents(line.said)}
-        self.assertLess({str(image), str(self.folder / "record.jsonl"), str(self.file)}, set(places))
+        self.assertLess({str(image), str(self.folder / "record.jsonl"), str(file)}, set(places))
         self.assertEqual([name for name, data in places.items() if shows(data, key)], [str(key_file)])
-        self.assertEqual([name for name, data in places.items() if shows(data, seed)], [str(self.file)])
+        self.assertEqual([name for name, data in places.items() if shows(data, seed)], [str(file)])
 
     def pair(self):
         """Tries several times: the board's first minute is short, since its time runs ahead of the host's."""
