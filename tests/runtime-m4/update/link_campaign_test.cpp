@@ -389,8 +389,11 @@ private:
     robot_.run(4500);  // enough also after a host that left no program, or half of one
     tool::Client client(robot_);
     link::Kept kept = client.kept();
-    // A trial may end while the reply that reports it is on its way.
-    for (unsigned asked = 1; asked < 10 && kept.state == link::Keeping::on_trial; ++asked) {
+    // A trial may end while the reply that reports it is on its way, and a slow store may still be read.
+    const auto comes_to_an_end = [&kept] {
+      return kept.state == link::Keeping::on_trial || kept.state == link::Keeping::reading;
+    };
+    for (unsigned asked = 1; asked < 10 && comes_to_an_end(); ++asked) {
       robot_.run(kept.trial_ms + 500);
       kept = client.kept();
     }
