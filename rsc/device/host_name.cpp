@@ -16,19 +16,14 @@
 
 #include <unistd.h>
 
+#include "vm/image.hpp"
+
 namespace robosync::tool {
 namespace {
 
 constexpr std::size_t kTag = 5;
 constexpr std::size_t kText = link::kNameLength - kTag;
 constexpr unsigned kProcessBits = 22, kMachineBits = 18;
-
-std::uint64_t fnv1a(const std::string& text) {
-  std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
-  for (const char c : text)
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100'0000'01B3;
-  return hash;
-}
 
 // This start of this computer, and the space in which its processes are numbered: those of another container are not seen
 // here. 0: unknown.
@@ -38,7 +33,8 @@ std::uint64_t machine() {
   std::error_code error;
   const auto space = std::filesystem::read_symlink("/proc/self/ns/pid", error);
   if (boot.empty() || error) return 0;
-  return fnv1a(boot + space.string()) >> (64 - kMachineBits);
+  const std::string both = boot + space.string();
+  return vm::crc32(std::as_bytes(std::span(both))) >> (32 - kMachineBits);
 }
 
 std::uint64_t tag_of(const link::Name& host) {

@@ -243,8 +243,7 @@ bool is_damaged(const link::ActivateResult& result) {
 // How far an upload has come: what the robot runs if the line fails now.
 struct Course {
   std::string old = "the old program keeps running";
-  bool starts =
-      false;  // the new program was to start, and the robot has not said that it did or did not
+  bool starts = false;  // the robot was told to start the new program, and has not answered
 
   // The failure, with what runs and what to do.
   Failure explain(const Failure& failure, const link::ProgramHash& hash) const {
@@ -384,7 +383,7 @@ void check_board(const Session& session, const Program& program) {
 void check_result(const link::ActivateResult& result, const Program& program) {
   if (result.running != 0) return;
   if (result.refusal == link::kNothingToActivate) {
-    throw Refused("the board lost the transfer again and again; is it being reset?");
+    throw Failure(Exit::outside, "the board lost the transfer again and again; is it being reset?");
   }
   const vm::Verdict verdict{static_cast<vm::Refusal>(result.refusal),
                             static_cast<vm::Section>(result.section), result.index};
@@ -403,10 +402,6 @@ void refuse_modules_in_files(const vm::Image& image) {
                       "docs/algorithms.md says how the firmware gets it",
                       image.string(sensor.name)));
 }
-
-}  // namespace
-
-namespace {
 
 // What certainly runs until the activation. A session that has been open for long may know an earlier program.
 std::string still_running(const link::HelloReply& board, bool is_news) {

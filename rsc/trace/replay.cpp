@@ -95,11 +95,15 @@ std::vector<std::byte> with_plain_channels(const Program& program,
   return bytes;
 }
 
+double thousandths_of(const Json& number) {
+  return std::round(number.get<double>() * vm::kScale);
+}
+
 // A reading as in the trace: a label, or a number in the canonical unit.
 vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& value) {
   if (value.is_string()) return parse_reading(image, channel, value.get<std::string>());
   if (!value.is_number()) throw std::invalid_argument("its value is not a number");
-  const double thousandths = std::round(value.get<double>() * vm::kScale);
+  const double thousandths = thousandths_of(value);
   if (std::abs(thousandths) > vm::kValueMax) throw std::invalid_argument("its value is too large");
   return static_cast<vm::Value>(thousandths);
 }
@@ -107,10 +111,9 @@ vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& val
 // A variable's value as in the trace; nothing if it is not one of its values.
 std::optional<vm::Value> value_of(const vm::Image& image, const vm::Variable& variable,
                                   const Json& value) {
-  if (value.is_number()) {
-    const double thousandths = std::round(value.get<double>() * vm::kScale);
-    return static_cast<vm::Value>(std::clamp<double>(thousandths, variable.min, variable.max));
-  }
+  if (value.is_number())
+    return static_cast<vm::Value>(
+        std::clamp<double>(thousandths_of(value), variable.min, variable.max));
   for (unsigned label = 0; label < variable.label_count; ++label)
     if (value == image.string(image.labels[variable.first_label + label]))
       return static_cast<vm::Value>(label) * vm::kScale;
