@@ -12,7 +12,8 @@ public:
       : kernel_(kernel), thread_(safety_thread), news_(news) {}
 
   void watch(InputMask inputs) { inputs_ = inputs; }
-  // The safety thread outranks every caller: it does its work when the caller lets go of the kernel's lock.
+  // The safety thread outranks every caller: it has done its work when this returns, or when a caller that holds the kernel's lock
+  // lets go of it.
   [[gnu::always_inline]] void ring(InputMask changed) {
     if ((changed & inputs_) != 0) kernel_.signal(thread_, news_);
   }

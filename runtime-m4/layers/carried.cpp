@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "runtime-m4/layers/kept.hpp"
+#include "runtime-m4/layers/name_key.hpp"
 
 namespace robosync::layers {
 namespace {
@@ -37,7 +37,7 @@ bool is_only_one(std::span<const std::uint32_t> keys, std::uint32_t key) {
 
 // The number of a label does not say which one it is: labels may be added and moved.
 std::uint32_t label_key(const vm::Image& image, const vm::Variable& state, unsigned label) {
-  return text_key(image.string(image.labels[state.first_label + label]));
+  return name_key(image.string(image.labels[state.first_label + label]));
 }
 
 vm::Value portable(const vm::Image& image, const vm::Variable& variable, vm::Value value) {

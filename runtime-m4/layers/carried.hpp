@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "runtime-m4/layers/kept.hpp"
 #include "runtime-m4/policy/memory.hpp"
 #include "vm/image.hpp"
 
@@ -31,6 +32,12 @@ private:
 
   std::array<Entry, policy::kMaxVariables> entries_{};
   std::size_t count_ = 0;
+};
+
+// What a program's variables begin with instead of the written values: numbers that were kept, then values of the program before.
+struct Beginnings {
+  std::span<const KeptNumber> kept;
+  const Carried& carried;
 };
 
 }  // namespace robosync::layers

@@ -2,22 +2,13 @@
 #include "runtime-m4/layers/kept.hpp"
 
 #include <algorithm>
-#include <string_view>
+
+#include "runtime-m4/layers/name_key.hpp"
 
 namespace robosync::layers {
 
-std::uint32_t text_key(std::string_view text, std::uint32_t seed) {
-  std::uint32_t key = seed;
-  for (const char letter : text) {
-    const bool capital = letter >= 'A' && letter <= 'Z';
-    const auto byte = static_cast<std::byte>(capital ? letter - 'A' + 'a' : letter);
-    key = vm::crc32(std::span(&byte, 1), key);
-  }
-  return key;
-}
-
 std::uint32_t kept_key(const vm::Image& image, const vm::Variable& variable) {
-  return text_key(image.string(variable.name),
+  return name_key(image.string(variable.name),
                   vm::crc32(std::as_bytes(std::span(&variable.dimension, 1))));
 }
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "vm/image.hpp"
 
@@ -17,19 +16,8 @@ struct KeptNumber {
   bool operator==(const KeptNumber&) const = default;
 };
 
-// From a name, ignoring case.
-[[nodiscard]] std::uint32_t text_key(std::string_view text, std::uint32_t seed = 0);
-
 // From a variable's name, ignoring case, and what it measures: a distance is not a time.
 [[nodiscard]] std::uint32_t kept_key(const vm::Image& image, const vm::Variable& variable);
-
-class Carried;
-
-// What a program's variables begin with instead of the written values: numbers that were kept, then values of the program before.
-struct Beginnings {
-  std::span<const KeptNumber> kept;
-  const Carried& carried;
-};
 
 // The initial value of `variable`: the number in `kept`, clamped to its range, or else the written one.
 [[nodiscard]] vm::Value initial_of(const vm::Image& image, const vm::Variable& variable,

@@ -18,6 +18,7 @@ target_sources(robosync_runtime PRIVATE
   layers/mailbox.cpp
   layers/memory.cpp
   layers/median.cpp
+  layers/name_key.cpp
   layers/order.cpp
   layers/performance.cpp
   layers/processing.cpp

@@ -247,15 +247,8 @@ kernel::Time ProcessingLayer::next_time() {
   soonest.in(next_due(now));
   soonest.at(adaptation_.next());
   const std::uint32_t delay = soonest.delay();
-  const kernel::Time due = delay == kNever ? kernel::kForever : time_after(now, delay);
+  const kernel::Time due = delay == kNever ? kernel::kForever : trace_.time_after(now, delay);
   return std::min(due, layers_.mailboxes.next_expiry());
-}
-
-// The tick may have come since `now`, which is part of the delay.
-kernel::Time ProcessingLayer::time_after(std::uint32_t now, std::uint32_t delay) const {
-  const auto still = kernel_.lock();
-  const std::uint32_t passed = std::min(trace_.milliseconds() - now, delay);
-  return kernel_.time() + kernel::milliseconds(delay - passed);
 }
 
 // --- the link's turn ---

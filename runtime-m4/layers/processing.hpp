@@ -143,7 +143,6 @@ private:
   void add_waiting(unsigned rule, Soonest& due) const;
   void add_wanting(unsigned rule, Soonest& due, std::uint32_t now) const;
   kernel::Time next_time();
-  kernel::Time time_after(std::uint32_t now, std::uint32_t delay) const;
   [[gnu::cold, gnu::noinline]] void give_way();
   [[gnu::cold]] void note_stops();
   [[gnu::cold]] void retire(const ProgramThreads::Member& member);

@@ -232,7 +232,7 @@ void SensorLayer::run_feeds() {
 }
 
 // One tick's worth: at most as many as the queue holds. A thread that preempts this one goes on with the rest, so
-// each entry that leaves the queue is announced, and rung for, under the same lock (announce_all()).
+// each entry that leaves the queue is announced, and rung for, under the same lock (announce_to_safety()).
 void SensorLayer::deliver() {
   const kernel::Time now = kernel_.now();
   ChannelMask news = 0;

@@ -1,7 +1,15 @@
 // See trace.hpp.
 #include "runtime-m4/layers/trace.hpp"
 
+#include <algorithm>
+
 namespace robosync::layers {
+
+kernel::Time Trace::time_after(std::uint32_t now, std::uint32_t delay) const {
+  const auto still = kernel_.lock();
+  const std::uint32_t passed = std::min(milliseconds() - now, delay);
+  return kernel_.time() + kernel::milliseconds(delay - passed);
+}
 
 void Trace::begin(link::Event& event, link::EventKind kind, Stamp stamp, unsigned subject,
                   unsigned object) {

@@ -40,6 +40,8 @@ public:
       return is_waiting() ? 0 : passed;
     return passed;
   }
+  // When `delay` milliseconds have passed since `now`, a value of milliseconds(). The tick may have come since.
+  kernel::Time time_after(std::uint32_t now, std::uint32_t delay) const;
   const Stamp& step() const { return step_; }
   Stamp now() const { return {program_time(), step_.step}; }
 

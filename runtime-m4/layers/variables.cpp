@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "runtime-m4/layers/carried.hpp"
 #include "runtime-m4/layers/clock.hpp"
 #include "vm/arithmetic.hpp"
 

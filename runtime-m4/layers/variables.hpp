@@ -15,7 +15,7 @@
 #include <span>
 
 #include "runtime-m4/kernel/kernel.hpp"
-#include "runtime-m4/layers/kept.hpp"
+#include "runtime-m4/layers/carried.hpp"
 #include "runtime-m4/layers/memory.hpp"
 #include "runtime-m4/layers/messages.hpp"
 #include "vm/interpreter.hpp"

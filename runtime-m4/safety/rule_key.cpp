@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "runtime-m4/layers/kept.hpp"
+#include "runtime-m4/layers/name_key.hpp"
 #include "vm/opcode_traits.hpp"
 
 namespace robosync::safety {
@@ -19,7 +19,7 @@ std::uint32_t add(std::uint32_t key, std::byte byte) {
 
 // A name ends with a zero byte, so that two names never look like one.
 std::uint32_t add_name(std::uint32_t key, std::string_view name) {
-  return add(layers::text_key(name, key), std::byte{0});
+  return add(layers::name_key(name, key), std::byte{0});
 }
 
 std::uint32_t add_input(std::uint32_t key, const vm::Image& image, std::size_t input) {

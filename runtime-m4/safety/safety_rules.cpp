@@ -201,15 +201,13 @@ inline unsigned SafetyRules::number_of(const vm::Rule& rule) const {
 }
 
 // Resets the machine's wake time: no time word is due until one sets it again. The delay counts from the tick at which the rules
-// were evaluated; another one may have come meanwhile.
+// were evaluated.
 kernel::Time SafetyRules::next_look() {
   vm::Machine& machine = work_->machine;
   const std::uint32_t wake = std::exchange(machine.wake, vm::Machine::kNever);
   if (wake == vm::Machine::kNever) return kernel::kForever;
   const std::uint32_t delay = std::max<std::uint32_t>(wake - machine.now, 1);
-  const auto still = kernel_.lock();
-  const std::uint32_t passed = std::min(layers_.trace.milliseconds() - machine.now, delay);
-  return kernel_.time() + kernel::milliseconds(delay - passed);
+  return layers_.trace.time_after(machine.now, delay);
 }
 
 }  // namespace robosync::safety

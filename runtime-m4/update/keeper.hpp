@@ -2,9 +2,10 @@
 //
 // A program that the host uploads is on trial while it is written into the store. It is kept once it has run for kTrial, or for
 // as long as the host says, without a fault and without a SAFETY rule that trips, unless the same rule (safety/rule_key.hpp) had
-// tripped in the program before, or no program ran before. If the trial fails, the kept program comes back immediately; a reset before the end of the
-// trial also brings it back. KEPT numbers are saved once a second if they have changed; a new program begins with those of the
-// one before. The link thread does all of this between the host's requests, one transfer at a time; an upload takes precedence.
+// tripped in the program before, or no program ran before. If the trial fails, the kept program comes back immediately; a reset
+// before the end of the trial also brings it back. KEPT numbers are saved once a second if they have changed; a new program begins
+// with those of the one before. The link thread does all of this between the host's requests, one transfer at a time; an upload
+// takes precedence.
 #pragma once
 
 #include <array>
@@ -119,8 +120,7 @@ private:
   kernel::Time trial_ends_ = 0;
   bool goes_back_ = false;    // after the trial, however well it went
   bool trips_count_ = false;  // a SAFETY rule that trips ends the trial, unless it is known
-  std::array<std::uint32_t, kMostTrips>
-      known_trips_{};  // rules that had tripped in the program before
+  std::array<std::uint32_t, kMostTrips> known_trips_{};  // of the program before
   std::size_t known_trips_count_ = 0;
   kernel::Time due_ = kernel::kForever;
   kernel::Time heard_ = 0;        // from the host

@@ -190,18 +190,27 @@ const char* const kThreeOutputs = R"({
 })";
 constexpr std::uint32_t kRest = 2;  // kernel/calls.def
 
+// That program, before anything is near.
+struct TwoResponses {
+  TwoResponses() {
+    REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
+    rig.run(5);
+    rig.feed(0, 20);
+    rig.run(120);
+  }
+  Rig rig;
+  test::Interrupts interrupts;
+};
+
 }  // namespace
 
 TEST_CASE(
     "a fault between the end of a behaviour's task and its rest does not lose its next task") {
   for (unsigned place = 1; place <= 3; ++place) {
     CAPTURE(place);
-    Rig rig;
-    test::Interrupts interrupts;
-    REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
-    rig.run(5);
-    rig.feed(0, 20);
-    rig.run(120);
+    TwoResponses scene;
+    Rig& rig = scene.rig;
+    test::Interrupts& interrupts = scene.interrupts;
     unsigned rests = 0;
     interrupts.before_call = [&](std::uint32_t number) {
       if (number == kRest && running(rig) == "low" && ++rests == place)
@@ -220,12 +229,9 @@ TEST_CASE(
 TEST_CASE("a damaged behaviour that rests in the middle of its task is stopped, the others go on") {
   const bool reports = GENERATE(false, true);
   CAPTURE(reports);
-  Rig rig;
-  test::Interrupts interrupts;
-  REQUIRE(rig.activate(test::compile(kTwoResponses, kThreeOutputs)).ok());
-  rig.run(5);
-  rig.feed(0, 20);
-  rig.run(120);
+  TwoResponses scene;
+  Rig& rig = scene.rig;
+  test::Interrupts& interrupts = scene.interrupts;
   bool done = false;
   interrupts.before_call = [&](std::uint32_t number) {
     if (number != kRest || running(rig) != "low" || std::exchange(done, true)) return;
