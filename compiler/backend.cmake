@@ -42,22 +42,22 @@ target_sources(robosync_compiler_small PRIVATE
   config/units.cpp
   config/values.cpp
   config/wiring.cpp
+  sema/behaviors.cpp
+  sema/defines.cpp
+  sema/follow.cpp
+  sema/functions.cpp
   sema/limits.cpp
+  sema/lints.cpp
+  sema/lists.cpp
   sema/motions.cpp
   sema/number_lists.cpp
   sema/perform.cpp
-  sema/timers.cpp
-  sema/behaviors.cpp
-  sema/follow.cpp
-  sema/functions.cpp
-  sema/lists.cpp
-  sema/variables.cpp
   sema/texts.cpp
-  sema/lints.cpp
-  sema/defines.cpp
+  sema/timers.cpp
+  sema/variables.cpp
+  codegen/costly_rules.cpp
   codegen/records.cpp
-  codegen/tables.cpp
-  codegen/costly_rules.cpp)
+  codegen/tables.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE
   compiler.cpp
@@ -101,6 +101,7 @@ target_sources(robosync_compiler PRIVATE
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # As in the front end, the code that words diagnostics is optimised for size.
 if(NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp sema/whole_commands.cpp
+  set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
+    sema/whole_commands.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

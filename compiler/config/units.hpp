@@ -58,8 +58,7 @@ struct Decimal {
 [[nodiscard]] std::string too_many_digits(std::string_view text);
 
 // A place for a value in a text that is output: "{cm}" for a number of centimetres, "{}" for a plain one, "{+F}" for a difference
-// of temperatures. The board sends the
-// text and the values separately; the host combines them.
+// of temperatures. The board sends the text and the values separately; the host combines them.
 struct ValuePlace {
   std::size_t begin = 0, size = 0;  // in the text
   const Unit* unit = nullptr;       // never null

@@ -23,6 +23,10 @@ namespace robosync::compiler::ascii {
   return 'a' <= lower(c) && lower(c) <= 'z';
 }
 
+[[nodiscard]] constexpr bool is_digit(char c) {
+  return '0' <= c && c <= '9';
+}
+
 // Ignores case.
 [[nodiscard]] constexpr bool same(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return same(x, y); });

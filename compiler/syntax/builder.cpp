@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler {
 
@@ -14,12 +15,8 @@ namespace {
 // Deeper than anyone writes, and shallow enough for the stack of any walk over the tree.
 constexpr std::uint16_t deepest_expression = 100;
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 bool all_digits(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), is_digit);
+  return std::all_of(text.begin(), text.end(), ascii::is_digit);
 }
 
 Span between(Span first, Span last) {
@@ -83,7 +80,7 @@ ast::Name Builder::longer_label(const ast::Name& label, Span next) {
 ast::Name Builder::whole_number(Span span) {
   const std::string_view text = text_of(span);
   // Text that does not begin with a digit was already repaired and reported by repair.cpp.
-  if (!text.empty() && is_digit(text.front()) && !all_digits(text)) {
+  if (!text.empty() && ascii::is_digit(text.front()) && !all_digits(text)) {
     report(Code::E0004, "this must be a whole number without a unit").label(span);
   }
   return name(span);
@@ -91,8 +88,8 @@ ast::Name Builder::whole_number(Span span) {
 
 ast::Box<ast::Expr> Builder::quantity(Span span) {
   const std::string_view text = text_of(span);
-  const auto unit =
-      std::find_if(text.begin(), text.end(), [](char c) { return !is_digit(c) && c != '.'; });
+  const auto unit = std::find_if(text.begin(), text.end(),
+                                 [](char c) { return !ascii::is_digit(c) && c != '.'; });
   const auto digits = static_cast<std::uint32_t>(unit - text.begin());
   const Span unit_span{span.file, span.begin + digits, span.end};
   return expr(span, ast::Quantity{text.substr(0, digits), text.substr(digits), unit_span});

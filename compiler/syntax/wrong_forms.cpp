@@ -1,6 +1,9 @@
 // Lines of RSL in a form that RSL lacks, as beginners write them: two words as a name, a FOR in the middle of a condition, a
 // number after BECOMES. See habits.hpp.
+#include <fmt/format.h>
+
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/ascii.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
@@ -9,33 +12,15 @@ namespace robosync::compiler {
 namespace {
 
 using Kindlist = std::initializer_list<TokenKind>;
-using Words = std::initializer_list<std::string_view>;
 
 bool is_small(char c) {
   return c >= 'a' && c <= 'z';
 }
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 bool is_name_letter(char c) {
-  return is_small(c) || (c >= 'A' && c <= 'Z') || is_digit(c) || c == '_';
+  return ascii::is_letter(c) || ascii::is_digit(c) || c == '_';
 }
 bool has_small(std::string_view word) {
   return std::ranges::any_of(word, is_small);
-}
-
-// `text` with the words in the places of `{0}`, `{1}`, …
-std::string filled(std::string_view text, Words words) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text[at] != '{') {
-      result += text[at];
-      continue;
-    }
-    result += words.begin()[text[at + 1] - '0'];
-    at += 2;
-  }
-  return result;
 }
 
 class WrongForms : private MistakenLine {
@@ -55,9 +40,12 @@ public:
   }
 
 private:
+  // Both texts have the words in the places of `{0}`, `{1}`, …
+  template <typename... Words>
   Diagnostic& say(Code code, Span place, std::string_view text, std::string_view help,
-                  Words words) {
-    return report(code, filled(text, words), place).helps(filled(help, words));
+                  const Words&... words) {
+    return report(code, fmt::format(fmt::runtime(text), words...), place)
+        .helps(fmt::format(fmt::runtime(help), words...));
   }
 
   // These tokens, which the text lacks, instead of `removed` ones.
@@ -119,7 +107,7 @@ private:
   // A word of RSL in capitals, or a slip of one, begins something else where the end of the line may follow the name.
   bool is_meant(const Named& named, std::size_t first, std::size_t end) const {
     if (is(first, Kinds::QUANTITY) && end == first + 1)
-      return std::ranges::any_of(text(first), [](char c) { return !is_digit(c); });
+      return std::ranges::any_of(text(first), [](char c) { return !ascii::is_digit(c); });
     for (std::size_t at = first; at < end; ++at) {
       const bool touches = at > first && tokens_[at].span.begin == tokens_[at - 1].span.end;
       if (is(at, Kinds::MINUS) ? !touches : is(at - 1, Kinds::MINUS) && !touches) return false;
@@ -139,7 +127,7 @@ private:
       better += (better.empty() ? "" : "_") + std::string(text(at));
     }
     const Span name = span(first, end);
-    if (is_digit(better.front())) {
+    if (ascii::is_digit(better.front())) {
       report(Code::E0001, "a name begins with a letter", name)
           .helps("choose another name, with the number at its end: `name2`");
       return;
@@ -149,7 +137,7 @@ private:
     d.helps("write `" + better + "`").fix(name, better, Applicability::likely);
     if (begins_with(Kinds::DEFINE) && !sign)
       d.helps(
-          filled("to pass values, write `DEFINE {0} WITH {1}`", {text(first), text(first + 1)}));
+          fmt::format("to pass values, write `DEFINE {0} WITH {1}`", text(first), text(first + 1)));
   }
 
   // ---- conditions
@@ -172,8 +160,8 @@ private:
     if (end <= first) return std::nullopt;
     const std::string better = "(" + text(first, stop_) + ")";
     say(Code::E0001, tokens_[stop_].span, "`{0}` ends a condition, so `{1}` cannot follow it",
-        "to combine it, put it in brackets: `{2} {1} …`",
-        {text(end), text(stop_, stop_ + (counts ? 2 : 1)), better})
+        "to combine it, put it in brackets: `{2} {1} …`", text(end),
+        text(stop_, stop_ + (counts ? 2 : 1)), better)
         .fix(span(first, stop_), better, Applicability::likely);
     Edit edit = change(first, stop_ - first, {missing(Kinds::OPEN, first)});
     edit.inserted.insert(edit.inserted.end(), tokens_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -197,7 +185,7 @@ private:
     const std::string what = asked(stop_ - 1);
     if (is(stop_, Kinds::QUANTITY)) {
       say(Code::E0001, sign, "`BECOMES` takes a word, but `{1}` is a number",
-          "compare a number with a sign: `{0} = {1}`", {what, text(stop_)})
+          "compare a number with a sign: `{0} = {1}`", what, text(stop_))
           .fix(sign, "=", Applicability::likely);
       return change(stop_ - 1, 1, {{Kinds::EQUAL, sign}});
     }
@@ -205,7 +193,7 @@ private:
     say(Code::E0001, span(stop_ - 1, stop_ + 1), "`BECOMES` takes a word, not `{1}`",
         is(stop_, Kinds::TRUE) ? "`WHEN {0}` already acts once, when it becomes true"
                                : "`WHEN NOT {0}` acts once, when it becomes false",
-        {what, text(stop_)});
+        what, text(stop_));
     return change(stop_ - 1, 1, {{Kinds::IS, sign}});
   }
 
@@ -216,7 +204,7 @@ private:
     Span word = tokens_[at].span;
     Diagnostic& d =
         say(Code::E0009, word, "`WHEN` already acts once, as soon as its condition is true",
-            "leave out `{0}`", {text(at)});
+            "leave out `{0}`", text(at));
     word.begin = tokens_[at - 1].span.end;
     d.fix(word, "", Applicability::likely);
     return change(at, 1);
@@ -235,20 +223,20 @@ private:
           has(stop_, end_, Kinds::WITHIN)
               ? "to check a condition, write `EXPECT THAT {0}`"
               : "to check a condition, write `EXPECT THAT {0} WITHIN 5s`",
-          {asked});
+          asked);
       return instead(stop_, end_ - stop_, {Kinds::QUANTITY});
     }
     if (test || asked.empty()) return std::nullopt;
     if (is(stop_, Kinds::WHILE) && stop_ == statement_ + 1) {
       say(Code::E0001, here, "`WAIT` waits for a time or `UNTIL` a condition is true",
-          "write `WAIT UNTIL NOT ({0})`", {asked});
+          "write `WAIT UNTIL NOT ({0})`", asked);
       return instead(stop_, 1, {Kinds::UNTIL});
     }
     if (!until || stop_ != statement_ + 2) return std::nullopt;
     say(Code::E0001, here, "`WAIT` takes a time or `UNTIL`, not both",
         "write two lines, `WAIT {0}` and `WAIT UNTIL {1}`, or, to wait no longer than that, "
         "`WAIT UNTIL {1} WITHIN {0}`",
-        {text(stop_ - 1), asked});
+        text(stop_ - 1), asked);
     return instead(stop_, 0, {Kinds::NEWLINE, Kinds::WAIT});
   }
 
@@ -259,7 +247,7 @@ private:
     if (is(stop_, Kinds::IS) && !is(stop_ + 1, Kinds::NOT)) {
       const Span sign = tokens_[stop_].span;
       say(Code::E0001, sign, "a step gives a sensor its value with `=`, not with `IS`",
-          "write `{0} = {1}`", {text(begin_ + 2, stop_), text(stop_ + 1, end_)})
+          "write `{0} = {1}`", text(begin_ + 2, stop_), text(stop_ + 1, end_))
           .fix(sign, "=", Applicability::likely);
       return change(stop_, 1, {{Kinds::EQUAL, sign}});
     }
@@ -267,7 +255,7 @@ private:
       if (!is(at, Kinds::NAME)) return std::nullopt;
     if (end_ < begin_ + 3 || end_ > begin_ + 4) return std::nullopt;
     say(Code::E0008, span(begin_ + 2, end_), "this step does not say what the sensor measures",
-        "write a value after `=`, such as `AT {0} touch LEVEL = 3`", {text(begin_ + 1)});
+        "write a value after `=`, such as `AT {0} touch LEVEL = 3`", text(begin_ + 1));
     return instead(begin_, end_ - begin_, {Kinds::WAIT, Kinds::QUANTITY});
   }
 
@@ -285,7 +273,7 @@ private:
     const std::string what = text(more, end);
     const std::string better = text(statement_, words) + " " + what + " " + text(words, more);
     say(Code::E0001, span(more, end), "the text is the last part of a command", "write `{0}`",
-        {better})
+        better)
         .fix(span(statement_, end), better, Applicability::likely);
     return change(more, end - more);
   }
@@ -299,8 +287,8 @@ private:
       return std::nullopt;
     const std::size_t end = statement_end();
     say(Code::E0001, span(stop_, end), "`STOP` takes no `FOR`: what it stops stays still",
-        "write `{0}`, and `WAIT {1}` on the next line",
-        {text(statement_, stop_), text(stop_ + 1, end)});
+        "write `{0}`, and `WAIT {1}` on the next line", text(statement_, stop_),
+        text(stop_ + 1, end));
     return change(stop_, end - stop_);
   }
 
@@ -308,7 +296,7 @@ private:
   std::optional<Edit> item() {
     if (is(stop_, Kinds::OF) && is_name(stop_ - 1, "ITEM") && is(stop_ + 1, Kinds::NAME)) {
       say(Code::E0008, span(stop_ - 1, stop_ + 2), "`ITEM` needs the position in the LIST",
-          "write a number after it, such as `ITEM 1 OF {0}`", {text(stop_ + 1)});
+          "write a number after it, such as `ITEM 1 OF {0}`", text(stop_ + 1));
       const Span word = tokens_[stop_ - 1].span;
       return change(stop_ - 1, 1, {{Kinds::ITEM, word}, missing(Kinds::QUANTITY, stop_)});
     }
@@ -320,7 +308,7 @@ private:
     if (end + 2 > end_) return std::nullopt;
     const Span all = span(stop_, end + 2);
     const std::string better = "(" + text(stop_, end + 2) + ")";
-    say(Code::E0505, all, "an `ITEM` needs brackets here", "write `{0}`", {better})
+    say(Code::E0505, all, "an `ITEM` needs brackets here", "write `{0}`", better)
         .fix(all, better, Applicability::likely);
     return instead(stop_, end + 2 - stop_, {Kinds::QUANTITY});
   }
@@ -337,7 +325,7 @@ private:
     Span gap = tokens_[stop_ - 1].span;
     gap.begin = gap.end;
     say(Code::E0008, tokens_[stop_].span, "a comma is missing between `{0}` and `{1}`",
-        "write `{0}, {1}`", {text(stop_ - 1), text(stop_)})
+        "write `{0}, {1}`", text(stop_ - 1), text(stop_))
         .fix(gap, ",", Applicability::likely);
     return instead(stop_, 0, {Kinds::COMMA});
   }
@@ -347,8 +335,8 @@ private:
     const bool begins = is(stop_, Kinds::QUANTITY) && stop_ == begin_ + 1 && is(begin_, Kinds::AT);
     if (!begins || !(is(stop_ + 1, Kinds::DO) || is(stop_ + 2, Kinds::DO))) return std::nullopt;
     say(Code::E0010, span(begin_, stop_ + 1), "a rule cannot begin with `AT {0}`",
-        "to act once after the start, write `AT START DO`, then `WAIT {0}`", {text(stop_)})
-        .helps(filled("to act again and again, write `EVERY {0} DO`", {text(stop_)}));
+        "to act once after the start, write `AT START DO`, then `WAIT {0}`", text(stop_))
+        .helps(fmt::format("to act again and again, write `EVERY {0} DO`", text(stop_)));
     return change(begin_, 1, {{Kinds::EVERY, tokens_[begin_].span}});
   }
 
@@ -361,9 +349,9 @@ private:
       return std::nullopt;
     const Span all = span(statement_, statement_ + 6);
     const std::string better =
-        filled(up ? "RAISE {0} BY 1" : "LOWER {0} BY 1", {text(statement_ + 1)});
+        fmt::format(fmt::runtime(up ? "RAISE {0} BY 1" : "LOWER {0} BY 1"), text(statement_ + 1));
     say(Code::E0001, span(statement_ + 4, statement_ + 6), "RSL does not use `{0}`", "write `{1}`",
-        {up ? "++" : "--", better})
+        up ? "++" : "--", better)
         .fix(all, better, Applicability::likely);
     return change(statement_ + 4, 2);
   }
@@ -387,7 +375,7 @@ private:
       edit.inserted.push_back(word);
     }
     const Span all = span(first, end_);
-    say(Code::E0001, all, "the words of a STATE have no quotes", "write `{0}`", {better})
+    say(Code::E0001, all, "the words of a STATE have no quotes", "write `{0}`", better)
         .fix(all, better, Applicability::likely);
     return edit;
   }
@@ -402,7 +390,7 @@ private:
       walk.step(end);
     if (!walk.open().empty()) return std::nullopt;
     say(Code::E0001, tokens_[stop_].span, "a line cannot begin with `{0}` here",
-        "commands belong in a rule or a DEFINE: `WHEN ... DO ... END`", {text(stop_)});
+        "commands belong in a rule or a DEFINE: `WHEN ... DO ... END`", text(stop_));
     while (is(end, Kinds::NEWLINE))
       ++end;
     return change(stop_, end - stop_);
