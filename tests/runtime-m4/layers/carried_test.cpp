@@ -53,6 +53,15 @@ TEST_CASE("a STATE keeps its label, wherever that is in its list now") {
   CHECK(beginnings(before, with("STATE mood: calm, glad", "SET mood TO glad")).empty());
 }
 
+TEST_CASE("what has the same name, but is of another kind, is not carried over") {
+  const std::string state = with("STATE mood: calm, glad", "SET mood TO glad");
+  const std::string feeling = with("FEELING mood FROM 0 TO 10 START 0", "SET mood TO 8");
+  const std::string number = with("REMEMBER mood = 0", "SET mood TO 3");
+  for (const std::string& before : {state, feeling, number})
+    for (const std::string& after : {state, feeling, number})
+      CHECK(beginnings(before, after).empty() == (before != after));
+}
+
 TEST_CASE("a FEELING goes on fading from where it was") {
   const std::string before = with("FEELING joy FROM 0 TO 10 START 0", "SET joy TO 8");
   CHECK(beginnings(before, with("FEELING joy FROM 0 TO 5 START 0", "SET joy TO 1")) ==
