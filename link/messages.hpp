@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 10;
+inline constexpr std::uint8_t kProtocolVersion = 11;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -42,6 +42,7 @@ struct HelloReply {
   std::uint16_t opcode_set;
   Name board;
   Name firmware;              // version
+  Name robot;                 // the name that the running program gives it; empty: none
   std::uint32_t arena_begin;  // address of the memory for programs
   std::uint32_t arena_bytes;
   std::uint32_t arena_used;   // by the running program, including its image

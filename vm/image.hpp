@@ -19,7 +19,7 @@ namespace robosync::vm {
 using Word = std::uint32_t;  // one instruction: op | a << 8 | b << 16 | c << 24
 
 inline constexpr std::uint32_t kMagic = 0x31425352;  // "RSB1"
-inline constexpr std::uint8_t kFormatMajor = 2;      // a board runs only images of its own major
+inline constexpr std::uint8_t kFormatMajor = 3;      // a board runs only images of its own major
 
 inline constexpr std::uint16_t kNoIndex = 0xFFFF;    // "none" in any u16 index
 inline constexpr std::uint8_t kNoWord = 0xFF;        // CMD without a word
@@ -47,6 +47,7 @@ inline constexpr unsigned kMaxWords = 255;
 inline constexpr unsigned kMaxInputs = 255;         // channels and variables
 inline constexpr unsigned kMaxCells = 255;          // frame cells of a behaviour
 inline constexpr unsigned kMaxKept = 16;            // KEPT variables: stored as one small record
+inline constexpr unsigned kMaxRobotName = 15;       // bytes
 inline constexpr unsigned kMaxResponseOutput = 64;  // output words of a response in one step
 
 enum class Dimension : std::uint8_t {
@@ -153,6 +154,13 @@ struct ImageHeader {
   std::uint16_t safety_start_ms;
 };
 static_assert(sizeof(ImageHeader) == 68);
+
+// The robot it is for, at most one. Without this record it is for any robot with that board.
+struct Robot {
+  std::uint16_t name;
+  std::uint16_t reserved;
+};
+static_assert(sizeof(Robot) == 4);
 
 // For an algorithm, `bus` is the number of its module in the firmware, `address` the index of its
 // parameters in the constants, and `first_input` the first channel that it reads, which belongs to an
@@ -357,6 +365,10 @@ struct Image {
 
   // The NUL-terminated string at `offset`; empty if kNoIndex or out of range.
   std::string_view string(std::uint16_t offset) const;
+  // The name of the robot that it is for; empty: any.
+  [[nodiscard]] std::string_view robot_name() const {
+    return robots.empty() ? std::string_view() : string(robots.front().name);
+  }
   // Are there SAFETY rules? If so, kSafetyBehavior holds them.
   [[nodiscard]] bool has_safety() const {
     return !behaviors.empty() && behaviors[kSafetyBehavior].priority == kSafetyPriority;

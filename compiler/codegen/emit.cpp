@@ -16,8 +16,6 @@
 namespace robosync::compiler {
 namespace {
 
-constexpr std::size_t kMaxTimers = 256;  // an operand of one byte
-
 class Emitter {
 public:
   Emitter(EmitOptions options, Diagnostics& diagnostics)
@@ -29,6 +27,7 @@ public:
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
     records_ = make_records(written, robot, tables, strings_);
     add_algorithms(robot, tables);
+    if (!robot.name.empty()) robots_.push_back({strings_.offset(robot.name), 0});
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
@@ -49,6 +48,7 @@ private:
   Strings strings_;
   Records records_;
   RuleSections rules_;
+  std::vector<vm::Robot> robots_;
   std::vector<vm::Value> constants_;
   std::vector<vm::SourceLine> lines_;
   vm::ImageHeader header_{};
@@ -92,7 +92,7 @@ bool Emitter::counts_fit() {
          fits(records_.keys.size(), kMost, "values in MOTIONs") &&
          fits(rules_.behaviors.size(), vm::kMaxBehaviors, "behaviours") &&
          fits(rules_.modifiers.size(), vm::kNoModifiers, "different COOLDOWNs and WAITINGs") &&
-         fits(rules_.timers.records().size(), kMaxTimers, "time words") &&
+         fits(rules_.timers.records().size(), UINT8_MAX, "time words") &&
          fits(rules_.rules.size(), kMost, "rules") &&
          fits(rules_.responses.size(), kMost, "responses") &&
          fits(rules_.inputs.size(), kMost, "inputs") &&
@@ -116,6 +116,7 @@ vm::Image Emitter::sections() const {
   image.behaviors = rules_.behaviors;
   image.modifiers = rules_.modifiers;
   image.adaptations = records_.adaptations;
+  image.robots = robots_;
   image.motions = records_.motions;
   image.tracks = records_.tracks;
   image.keys = records_.keys;

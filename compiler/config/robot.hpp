@@ -184,6 +184,7 @@ struct MissingModule {
 enum class LintLevel : std::uint8_t { allow, warn, deny };
 
 struct Robot {
+  std::string name;  // the robot's own; empty: not given
   std::vector<SensorConfig> sensors;
   std::vector<ActuatorConfig> actuators;
   std::vector<GroupConfig> groups;

@@ -15,6 +15,7 @@
 #include "compiler/config/values.hpp"
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/utf8.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -275,6 +276,26 @@ bool names_can_be_written(const Diagnostics& diagnostics, std::size_t before) {
   return !has_any(diagnostics, before, kFelt);
 }
 
+// The robot's own name. It need not be one that RSL can write: a program does not use it.
+std::string read_robot_name(const json::Value& value, Diagnostics& diagnostics) {
+  const auto name = read_text(value, diagnostics);
+  if (!name) return {};
+  const std::size_t size = name->size();
+  std::string wrong;
+  if (size == 0 || name->front() == ' ' || name->back() == ' ')
+    wrong = "a robot's name begins and ends with a letter or another visible character";
+  else if (utf8::printable(*name) != *name)
+    wrong = "a robot's name has no invisible characters, such as tabs and new lines";
+  else if (size > vm::kMaxRobotName)
+    wrong = "a robot's name is at most " + std::to_string(vm::kMaxRobotName) + " letters long";
+  if (wrong.empty()) return *name;
+  Diagnostic& d = diagnostics.report(Code::E0205, wrong).label(value.span);
+  if (size > vm::kMaxRobotName)
+    d.helps("make it " + std::to_string(size - vm::kMaxRobotName) +
+            " shorter; a letter that is not English, such as ä, counts as two or more");
+  return {};
+}
+
 }  // namespace
 
 std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
@@ -284,6 +305,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
   const std::size_t before = diagnostics.all().size();
   const Fields fields(*tree, Object::robot, diagnostics);
   Robot robot;
+  if (const auto* name = fields.find("name")) robot.name = read_robot_name(*name, diagnostics);
   if (const auto* board = fields.find("board"))
     robot.board = read_choice(*board, board_names(), diagnostics);
   Board of_robot = board_for(robot.board);

@@ -75,6 +75,7 @@ void Bridge::board(const link::HelloReply& board, const Past& past,
                    const std::vector<OnBus>& silent) {
   publish("board",
           {{"name", tool::text_of(board.board)},
+           {"robot", robot_json(board)},
            {"uptime_us", past.status.uptime_us},
            {"reset_reason", reset_reason(past.status)},
            {"faults", past.status.faults},

@@ -24,6 +24,7 @@ void Printer::board(const link::HelloReply& board, const Past& past,
   if (format_ == Format::json) {
     print({{"event", "board"},
            {"name", text_of(board.board)},
+           {"robot", robot_json(board)},
            {"uptime_us", past.status.uptime_us},
            {"reset_reason", reset_reason(past.status)},
            {"faults", past.status.faults},
@@ -35,6 +36,8 @@ void Printer::board(const link::HelloReply& board, const Past& past,
   std::cout << fmt::format("        board  {}, up {}{}\n", text_of(board.board),
                            past_text(past.status),
                            past.has_fault() ? "; last fault: " + fault_text(past.fault) : "");
+  const std::string robot = text_of(board.robot);
+  if (!robot.empty()) std::cout << "        robot  " << robot << '\n';
   std::cout << "        owner  " << owner_text(past.owner) << '\n';
   for (const OnBus& device : silent)
     std::cout << "       silent  " << silent_text(device) << '\n';

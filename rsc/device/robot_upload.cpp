@@ -57,6 +57,7 @@ Uploaded upload_to(const std::string& port, const Program& program, const SendOp
   how.timeout = options.timeout;
   how.trial = options.trial.value_or(milliseconds(0));
   how.confirm = !options.no_confirm;
+  how.to_any_robot = options.anyway;
   how.replace = options.replace;
   how.fresh = options.fresh;
   if (!how.replace) how.base = base;

@@ -17,9 +17,11 @@ std::string header_text(const vm::Image& image) {
                                  fmt::join(header.program_hash, ""), header.format_major,
                                  header.opcode_set, header.crc32);
   const auto board = board_of(header);
-  text += fmt::format("for {}; {} bytes, a step costs up to {} instructions, seed {}\n",
-                      board ? board->name : "no board that this rsc knows", header.total_length,
-                      header.step_cost, header.seed);
+  const std::string_view robot = image.robot_name();
+  text += fmt::format("for {}{}; {} bytes, a step costs up to {} instructions, seed {}\n",
+                      board ? board->name : "no board that this rsc knows",
+                      robot.empty() ? "" : fmt::format(", the robot \"{}\"", robot),
+                      header.total_length, header.step_cost, header.seed);
   for (const SectionSize& size : section_sizes(image)) {
     text += fmt::format("  {:<14}{:>5} x {:>6} bytes\n", vm::describe(size.section), size.records,
                         size.bytes);

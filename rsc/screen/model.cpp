@@ -32,7 +32,9 @@ bool is_shown(const vm::Image& image, const vm::Variable& variable) {
 
 void Model::board(const link::HelloReply& board, const Past& past,
                   const std::vector<OnBus>& silent) {
+  const std::string robot = text_of(board.robot);
   board_ = text_of(board.board);
+  if (!robot.empty()) board_ = fmt::format("{} ({})", robot, board_);
   stopped_ = board.stopped != 0;
   uptime_us_ = past.status.uptime_us;
   say(fmt::format("{}, up {}", board_, past_text(past.status)));

@@ -56,6 +56,7 @@ std::string memory_text(const link::HelloReply& board, std::span<const std::byte
 
 Json board_json(const link::HelloReply& board, std::span<const std::byte> image) {
   Json object{{"name", text_of(board.board)},
+              {"robot", robot_json(board)},
               {"firmware", text_of(board.firmware)},
               {"protocol", board.protocol},
               {"image_format", board.image_major},
@@ -129,6 +130,8 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   const link::Status& status = past.status;
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
+  const std::string robot = text_of(board.robot);
+  if (!robot.empty()) std::cout << fmt::format("robot     {}\n", robot);
   std::cout << fmt::format("owner     {}\n", owner_text(owner));
   std::cout << memory_text(board, image);
   std::cout << fmt::format("takes     steps up to {} instructions\n", board.step_budget);

@@ -174,6 +174,8 @@ void Server::hello(const link::Frame& frame) {
     answer.running = 1;
     answer.program_hash = header.program_hash;
     answer.image_bytes = header.total_length;
+    static_assert(vm::kMaxRobotName < link::kNameLength);
+    answer.robot = layers::padded(runtime_.image().robot_name());
   }
   send(MessageType::hello_reply, frame.sequence, link::wire_bytes(answer));
 }

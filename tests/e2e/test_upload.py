@@ -3,6 +3,7 @@
 import json
 import time
 import unittest
+from pathlib import Path
 
 import periods
 import rsc
@@ -84,6 +85,19 @@ class Upload(RobotTest):
         self.assertEqual(done.returncode, 3)
         self.assertIn(f"it is for {other}, and this is {NAME}", done.stderr)
         self.assertEqual(self.status()["activations"], 0)
+
+    def test_an_image_for_another_robot_is_refused(self):
+        config = json.loads(Path(self.for_board(CONFIG)).read_text())
+        for name in ("ada", "bob"):
+            (self.folder / f"{name}.json").write_text(json.dumps(config | {"name": name}))
+        self.upload(PROGRAMS / "paper.rsl", "--config", self.folder / "ada.json")
+        bobs = ("upload", PROGRAMS / "paper.rsl", "--config", self.folder / "bob.json", "--port", self.board.port)
+        done = rsc.call(*bobs)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('this robot is "ada", and the program is for "bob"', done.stderr)
+        self.assertEqual(rsc.info(self.board.port)["board"]["robot"], "ada")
+        rsc.run(*bobs, "--anyway")
+        self.assertEqual(rsc.info(self.board.port)["board"]["robot"], "bob")
 
     def test_a_suspended_board_ends_rsc_soon_and_goes_on_later(self):
         image = self.compile(PROGRAMS / "paper.rsl")

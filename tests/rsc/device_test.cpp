@@ -204,6 +204,40 @@ TEST_CASE("a program for another board than the one on the line is refused, and 
         1);
 }
 
+TEST_CASE("a program for another robot is refused with both names, except with --anyway") {
+  const Device device;
+  const auto program_for = [&](const std::string& name) {
+    json robot = json::parse(test::kRobot);
+    if (!name.empty()) robot["name"] = name;
+    const std::string image = device.path(name + ".rsb");
+    REQUIRE(test::rsc({"compile", device.program, "--config",
+                       device.write(name + ".json", robot.dump()), "-o", image})
+                .exit == 0);
+    return image;
+  };
+  const std::string ada = program_for("ada"), bob = program_for("bob"), any = program_for("");
+  const auto name = [&] {
+    return json::parse(device.run({"info", "--format", "json"}).out).at("board").at("robot");
+  };
+  REQUIRE(device.run({"upload", any}).exit == 0);
+  CHECK(name() == nullptr);
+  REQUIRE(device.run({"upload", ada}).exit == 0);
+  CHECK(name() == "ada");
+  for (const std::vector<std::string>& sent :
+       {std::vector<std::string>{"upload", bob}, {"feed", "touch.LEVEL=2", "--upload", bob}}) {
+    const Outcome outcome = device.run(sent);
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 3);
+    CHECK_THAT(outcome.err, Contains("this robot is \"ada\", and the program is for \"bob\""));
+  }
+  CHECK(name() == "ada");
+  CHECK_THAT(device.run({"info"}).out, Contains("robot     ada\n"));
+  CHECK_THAT(device.run({"monitor", "--duration", "200ms"}).out, Contains("        robot  ada\n"));
+  REQUIRE(device.run({"upload", bob, "--anyway"}).exit == 0);
+  CHECK(name() == "bob");
+  CHECK_THAT(test::rsc({"dump", bob}).out, Contains(", the robot \"bob\"; "));
+}
+
 TEST_CASE("a program this board cannot run is refused before it is sent, and the old one goes on") {
   const Device device(12 * 1024);  // less than the board that robot.json is for
   REQUIRE(device.run({"upload", device.program}).exit == 0);

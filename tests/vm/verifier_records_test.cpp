@@ -525,6 +525,20 @@ TEST_CASE("responses") {
   refused(0, [](Response& r) { r.length = 0xFFFF; });
 }
 
+TEST_CASE("robot: none or one, and it has a name") {
+  const auto with = [](std::vector<Robot> robots) {
+    return [robots](auto& image) { image.robots = robots; };
+  };
+  check_accepted([&] {
+    ImageBuilder image = robot::make();
+    image.robots = {{0, 0}};
+    return image;
+  }());
+  check_refused(with({{0, 0}, {0, 0}}), {Refusal::bad_value, Section::header, 0});
+  check_refused(with({{0, 1}}), {Refusal::bad_value, Section::robots, 0});
+  check_refused(with({{0x7FFF, 0}}), {Refusal::bad_string, Section::robots, 0});
+}
+
 TEST_CASE("adaptation: none or one, in its ranges") {
   const auto with = [](auto change) {
     ImageBuilder image = robot::make();

@@ -175,7 +175,7 @@ TEST_CASE("every statement knows its line, and so does what follows a nested one
   CHECK(must_build(program_of({when(kClose, {kLeft})})).image.source_lines.empty());
 }
 
-TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
+TEST_CASE("the header has the seed that is asked for or the robot's, and the robot's name") {
   CHECK(must_build(program_of({when(kClose, {kLeft})})).image.header->seed == 0);
   Diagnostics diagnostics;
   const ir::Program program = program_of({when(kClose, {kLeft})});
@@ -191,6 +191,12 @@ TEST_CASE("the seed is the one that is asked for, or the robot's, or none") {
   CHECK(header_of({}).seed == 5);
   CHECK(header_of({.seed = 7}).seed == 7);
   CHECK(header_of({}).safety_start_ms == 30);
+  CHECK(header_of({}).robots == 0);
+  robot.name = "ada";
+  const Emitted named = emit(program, program, robot, {}, diagnostics);
+  vm::Image image;
+  REQUIRE(vm::verify(named.image, {}, image).ok());
+  CHECK(image.robot_name() == "ada");
 }
 
 TEST_CASE("blocks nest as deeply as the robot allows, and no deeper") {
