@@ -115,8 +115,8 @@ Overload overload_of(const ResponseReport& report) {
   Overload overload;
   if (report.utilization > 1) {
     overload.what =
-        fmt::format("all of it takes {:.0f} % of the processor", kPercent * report.utilization);
-    overload.why.push_back(fmt::format("of the {} instructions in a millisecond it takes {}",
+        fmt::format("it may take {:.0f} % of the processor", kPercent * report.utilization);
+    overload.why.push_back(fmt::format("a millisecond has {} instructions; the program may take {}",
                                        report.instructions_per_ms, first_of(report.loads)));
   } else {
     const PathTiming& path =

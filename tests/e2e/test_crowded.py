@@ -36,7 +36,14 @@ class Crowded(RobotTest):
         source.write_text(BUSY)
         refused = rsc.call("check", source, "--config", self.for_board(PROGRAMS / "robot.json"))
         self.assertIn("error[E0412]", refused.stderr)
-        self.upload(self.compile(source), "--anyway")
+        image = self.compile(source)
+        for refusal, *program in (("error[E0412]", source, "--config", self.for_board(PROGRAMS / "robot.json")),
+                                  ("--anyway uploads it anyway", image)):
+            refused = rsc.call("upload", *program, "--port", self.board.port)
+            self.assertEqual(refused.returncode, 1, refused.stderr)
+            self.assertIn(refusal, refused.stderr)
+        self.assertEqual(self.status()["activations"], 0)
+        self.upload(image, "--anyway")
 
     def test_it_answers_in_time_and_the_program_goes_on(self):
         with wire.Line(self.board.port) as line:

@@ -1,4 +1,6 @@
-// A person's stop and resume while one program replaces another: they take effect whenever they come.
+// A person's stop and resume, and a hazard, while one program replaces another: they take effect whenever they come.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runtime-m4/rig.hpp"
@@ -178,4 +180,83 @@ TEST_CASE("measurements end before the image that says where they are is overwri
       test::compile("WHEN near X < 20\nDO RUN motor TO 70%\nEND\n", outputs_with("coast")));
   CHECK(robot.board.takes > before);
   CHECK(is_whole);
+}
+
+namespace {
+
+constexpr std::uint16_t kBumper = 40;
+constexpr unsigned kSampleMs = 20;  // of a button
+constexpr unsigned kWaitMs = 100;   // for the readings of SAFETY rules
+const char* const kGuardedProgram =
+    "SAFETY crash\n  WHEN bumper IS PRESSED\n  DO STOP motor\n  RESUME WHEN NOT bumper IS "
+    "PRESSED\nEND\n"
+    "EVERY 10ms\nDO\n  RUN motor TO 70%\nEND\n";
+
+// A robot with a motor that runs into something, and stops at it.
+struct Guarded : Changing {
+  Guarded() {
+    board.level = [this](std::uint16_t pin) { return pin != kBumper || !is_pressed; };
+    upload(program);
+    go_on(500);
+    REQUIRE(moves());
+  }
+  // How many ms from now the motor is off for good: while a program waits for its first readings, it is off in between.
+  unsigned until_off() {
+    unsigned went_on = 0;
+    for (unsigned ms = 1; ms <= 4 * kWaitMs; ++ms) {
+      go_on(1);
+      if (board.pulse(kMotor) != 0) went_on = ms;
+    }
+    return went_on;
+  }
+  const std::vector<std::byte> program = test::compile(
+      kGuardedProgram,
+      outputs_with("coast",
+                   R"({"name": "bumper", "type": "GPIO", "pin": 40, "device": "button"}, )"));
+  bool is_pressed = false;
+};
+
+}  // namespace
+
+TEST_CASE("a hazard at whatever moment of an upload stops the motor as soon as without an upload") {
+  for (unsigned place = 1, last = 1; place <= last; ++place) {
+    CAPTURE(place);
+    Guarded robot;
+    robot.act_at = place;
+    robot.act = [&] { robot.is_pressed = true; };
+    robot.upload(robot.program);
+    last = robot.last;
+    robot.is_pressed = true;
+    CHECK(robot.until_off() <= kSampleMs + 1);
+  }
+  for (unsigned after = 0; after < 2 * kWaitMs; ++after) {
+    CAPTURE(after);
+    Guarded robot;
+    robot.upload(robot.program);
+    robot.go_on(after);
+    robot.is_pressed = true;
+    CHECK(robot.until_off() <= kSampleMs + 1);
+  }
+  for (unsigned before = 0; before <= kSampleMs; ++before) {
+    CAPTURE(before);
+    Guarded robot;
+    robot.is_pressed = true;
+    robot.go_on(before);
+    robot.upload(robot.program);
+    CHECK(robot.until_off() + before <= kSampleMs + 1);
+  }
+}
+
+TEST_CASE("a hazard that is there before an upload, during it and after it holds the motor") {
+  Guarded robot;
+  robot.is_pressed = true;
+  (void)robot.until_off();
+  std::vector<std::uint32_t> seen;
+  robot.board.on_pin = [&] { seen.push_back(robot.board.pulse(kMotor)); };
+  robot.upload(robot.program);
+  CHECK(robot.until_off() == 0);
+  CHECK(std::ranges::all_of(seen, [](std::uint32_t pulse) { return pulse == 0; }));
+  robot.is_pressed = false;
+  robot.go_on(2 * kSampleMs + 20);
+  CHECK(robot.moves());
 }
