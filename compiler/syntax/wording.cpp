@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
@@ -312,27 +313,24 @@ private:
     if (number.kind != Kinds::QUANTITY) return false;
     const std::string digits(source_.text(number.span));
     if (digits.empty() || digits.back() < '0' || digits.back() > '9') return false;
-    constexpr std::size_t longest_unit = 4;
-    const Span gap{number.span.file, number.span.end, tokens_[edit_.at].span.begin};
     const std::string unit(source_.text(tokens_[edit_.at].span));
+    const Unit* const known = find_unit(unit);
+    const std::string_view foreign = foreign_unit(unit);
+    const std::string_view ours = known != nullptr ? known->spelling : unit_word(unit);
+    if (ours.empty() && foreign.empty()) return false;
     Diagnostic& message =
         diagnostics_.report(Code::E0009, quote(edit_.at) + " does not belong here")
             .label(tokens_[edit_.at].span);
-    if (const std::string_view ours = foreign_unit(unit); !ours.empty()) {
-      message.helps("RSL does not have this unit: " + std::string(ours));
+    if (!foreign.empty()) {
+      message.helps("RSL does not have this unit: " + std::string(foreign));
       return true;
     }
-    if (const std::string_view ours = unit_word(unit); !ours.empty()) {
-      const std::string better = digits + std::string(ours);
-      message.message = "this unit is written " + std::string("`") + std::string(ours) + "` in RSL";
-      message.helps("write `" + better + "`")
-          .fix({gap.file, number.span.begin, tokens_[edit_.at].span.end}, better,
-               Applicability::likely);
-      return true;
-    }
-    if (unit.size() > longest_unit) return true;
-    message.helps("if it is a unit, write it without a space: `" + digits + unit + "`")
-        .fix(gap, "", Applicability::likely);
+    message.message = known != nullptr ? "a unit follows its number without a space"
+                                       : "this unit is written `" + std::string(ours) + "` in RSL";
+    const std::string better = digits + std::string(ours);
+    message.helps("write `" + better + "`")
+        .fix({number.span.file, number.span.begin, tokens_[edit_.at].span.end}, better,
+             Applicability::likely);
     return true;
   }
 

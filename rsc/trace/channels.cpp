@@ -18,10 +18,19 @@ namespace {
 
 [[noreturn]] void no_such(std::string_view what, std::string_view name,
                           const std::vector<std::string>& known) {
+  constexpr std::size_t kMostListed = 8;
   const auto near = compiler::nearest(name, known);
-  throw std::invalid_argument(
-      fmt::format("there is no {} `{}`{}", what, name,
-                  near ? fmt::format("; did you mean `{}`?", *near) : std::string()));
+  std::string mend;
+  if (near)
+    mend = fmt::format("; did you mean `{}`?", *near);
+  else if (known.size() <= kMostListed)
+    mend = fmt::format("; known: {}", fmt::join(known, ", "));
+  throw std::invalid_argument(fmt::format("there is no {} `{}`{}", what, name, mend));
+}
+
+[[noreturn]] void has_several(std::string_view sensor, const std::vector<std::string>& channels) {
+  throw std::invalid_argument(fmt::format("`{}` has several channels; name one of them: {}", sensor,
+                                          fmt::join(channels, ", ")));
 }
 
 std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::string_view name) {
@@ -39,10 +48,7 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
       return static_cast<std::uint8_t>(sensor.first_channel + i);
     known.emplace_back(candidate);
   }
-  if (name.empty()) {
-    throw std::invalid_argument(fmt::format("`{}` has several channels; name one of them: {}",
-                                            image.string(sensor.name), fmt::join(known, ", ")));
-  }
+  if (name.empty()) has_several(image.string(sensor.name), known);
   no_such(fmt::format("channel of {}", image.string(sensor.name)), name, known);
 }
 
@@ -87,6 +93,11 @@ std::optional<std::uint8_t> find_read_channel(const Program& program, std::strin
   const auto meant = [&](const auto& entry) {
     return is_channel(entry.first, name.sensor, name.channel);
   };
+  std::vector<std::string> all;  // of this sensor, also those that the program does not read
+  if (name.channel.empty())
+    for (const auto& [full, unit] : program.origin().units.channels)
+      if (is_channel(full, name.sensor, {})) all.push_back(full.substr(full.find('.') + 1));
+  if (all.size() > 1) has_several(name.sensor, all);
   const vm::Image& image = program.image();
   const bool read = std::ranges::any_of(image.channels, [&](const vm::Channel& candidate) {
     return compiler::ascii::same(image.string(image.sensors[candidate.sensor].name), name.sensor) &&

@@ -136,6 +136,26 @@ TEST_CASE("a wrong scenario gets one message with its line") {
              Contains("did you mean `value`?"));
 }
 
+TEST_CASE("a sensor of which the program reads only one channel still has several") {
+  using Catch::Contains;
+  const tool::Program program =
+      test::compile("WHEN proximity NOISE > 60dB DO\n  MOVE left_arm TO 0deg\nEND\n");
+  const test::Folder folder;
+  CHECK_THAT(mistake_in("visit.json",
+                        [&] {
+                          (void)tool::read_scenario(folder.write("visit.json", R"({"stimuli": [
+    {"at": "1s", "sensor": "proximity", "value": "70dB"}]})"),
+                                                    program);
+                        }),
+             Contains("`proximity` has several channels") && Contains("DISTANCE, NOISE"));
+}
+
+TEST_CASE("a name that is like no other is answered with those that there are") {
+  using Catch::Contains;
+  CHECK_THAT(mistake("{\"stimuli\": [{\"at\": \"1s\", \"sensor\": \"door\", \"value\": 1}]}"),
+             Contains("there is no sensor `door`; known: touch, proximity"));
+}
+
 TEST_CASE("braces, commas and quotes in strings do not confuse the lines") {
   CHECK(mistake("{\"stimuli\": [\n{\"at\": \"1s\", \"sensor\": \"}],\\\"{\", \"value\": 1},\n"
                 "{\"at\": 1}]}")
