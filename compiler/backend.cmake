@@ -39,7 +39,6 @@ target_sources(robosync_compiler_small PRIVATE
   config/robot_reader.cpp
   config/robot_vocabulary.cpp
   config/sensors.cpp
-  config/units.cpp
   config/values.cpp
   config/wiring.cpp
   sema/behaviors.cpp
@@ -57,7 +56,8 @@ target_sources(robosync_compiler_small PRIVATE
   sema/variables.cpp
   codegen/costly_rules.cpp
   codegen/records.cpp
-  codegen/tables.cpp)
+  codegen/tables.cpp
+  units/units.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE
   compiler.cpp

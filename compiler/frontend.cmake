@@ -52,7 +52,6 @@ target_sources(robosync_compiler PRIVATE
   syntax/edit.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
-  syntax/foreign_units.cpp
   syntax/format.cpp
   syntax/habits.cpp
   syntax/heads.cpp
@@ -67,7 +66,8 @@ target_sources(robosync_compiler PRIVATE
   syntax/reader.cpp
   syntax/repair.cpp
   syntax/wrong_forms.cpp
-  syntax/wording.cpp)
+  syntax/wording.cpp
+  units/foreign_units.cpp)
 # Public for the tests, which look at tokens. SYSTEM silences warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)

@@ -1,4 +1,4 @@
-// Uses the compiler's units (compiler/config/units.def).
+// Uses the compiler's units (compiler/units/units.def).
 #include "rsc/quantity.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::tool {
 namespace {

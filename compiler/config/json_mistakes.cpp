@@ -6,11 +6,11 @@
 #include <cctype>
 #include <string>
 
-#include "compiler/config/units.hpp"
 #include "compiler/config/values.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/character_names.hpp"
 #include "compiler/source/utf8.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler::json {
 namespace {

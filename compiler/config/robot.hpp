@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "compiler/config/names.hpp"
-#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/units/units.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::compiler {

@@ -9,7 +9,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
-#include "compiler/syntax/foreign_units.hpp"
+#include "compiler/units/foreign_units.hpp"
 
 namespace robosync::compiler {
 namespace {

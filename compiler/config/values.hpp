@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "compiler/config/json_reader.hpp"
-#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 

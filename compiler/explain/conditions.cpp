@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/config/units.hpp"
 #include "compiler/explain/statements.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler::explain {
 namespace {

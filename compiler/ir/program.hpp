@@ -22,7 +22,7 @@
 #include "vm/image.hpp"
 
 namespace robosync::compiler {
-struct Unit;  // config/units.hpp
+struct Unit;  // units/units.hpp
 }
 
 namespace robosync::compiler::ir {

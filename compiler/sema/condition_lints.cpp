@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <set>
 
-#include "compiler/config/units.hpp"
 #include "compiler/ir/walk.hpp"
 #include "compiler/syntax/walk.hpp"
+#include "compiler/units/units.hpp"
 #include "vm/drivers.hpp"
 
 namespace robosync::compiler {

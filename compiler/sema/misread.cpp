@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <optional>
 
-#include "compiler/config/units.hpp"
 #include "compiler/sema/commands.hpp"
-#include "compiler/syntax/foreign_units.hpp"
+#include "compiler/units/foreign_units.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 

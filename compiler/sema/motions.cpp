@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "compiler/config/units.hpp"
 #include "compiler/config/wiring.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 namespace {

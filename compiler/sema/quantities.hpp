@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/ir/program.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 

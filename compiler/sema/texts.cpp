@@ -1,6 +1,6 @@
 #include "compiler/sema/texts.hpp"
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 

@@ -1,9 +1,9 @@
 // Habits from other languages. The lexer reports those that it can detect on its own (`&&`, braces, comments); see
 // habits.hpp.
-#include "compiler/syntax/foreign_units.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
+#include "compiler/units/foreign_units.hpp"
 
 namespace robosync::compiler {
 

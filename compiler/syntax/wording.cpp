@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
-#include "compiler/syntax/foreign_units.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/units/foreign_units.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 #include "rsc/timeline/thresholds.hpp"
 
 namespace robosync::tool {

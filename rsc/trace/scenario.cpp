@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 #include <jansson.h>
 
-#include "compiler/config/units.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/ascii.hpp"
+#include "compiler/units/units.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/quantity.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/trace_format.hpp"
 #include "vm/drivers.hpp"

@@ -66,15 +66,16 @@ TOOL = {
 COMPILER = {
     "source": set(),
     "diagnostics": {"source"},
-    "syntax": {"source", "diagnostics"},
-    "config": {"source", "diagnostics", "syntax"},
+    "units": {"source", "diagnostics"},
+    "syntax": {"source", "diagnostics", "units"},
+    "config": {"source", "diagnostics", "units", "syntax"},
     "ir": {"source"},
-    "sema": {"source", "diagnostics", "syntax", "config", "ir"},
-    "optimize": {"config", "ir"},
-    "codegen": {"source", "diagnostics", "config", "ir"},
-    "explain": {"source", "diagnostics", "syntax", "config"},
-    "test_plan": {"source", "diagnostics", "syntax", "config", "ir", "sema"},
-    "query": {"source", "diagnostics", "syntax", "config", "sema", "explain"},
+    "sema": {"source", "diagnostics", "syntax", "units", "config", "ir"},
+    "optimize": {"units", "config", "ir"},
+    "codegen": {"source", "diagnostics", "units", "config", "ir"},
+    "explain": {"source", "diagnostics", "syntax", "units", "config"},
+    "test_plan": {"source", "diagnostics", "syntax", "units", "config", "ir", "sema"},
+    "query": {"source", "diagnostics", "syntax", "units", "config", "sema", "explain"},
 }
 # Standard headers that allocate or throw, or need an operating system.
 HOSTED_HEADERS = {

@@ -1,5 +1,5 @@
 // Exact conversion of written numbers.
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 #include "tests/oracles/rsl/analysed.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 #include "tests/oracles/rsl/response.hpp"
 
 namespace robosync::oracle {

@@ -1,5 +1,5 @@
 // See foreign_units.hpp.
-#include "compiler/syntax/foreign_units.hpp"
+#include "compiler/units/foreign_units.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -13,7 +13,7 @@ std::string_view foreign_unit(std::string_view unit) {
 #define FOREIGN_UNIT(spelling, one) \
   if (ascii::same(unit, spelling)) return "1" spelling " is " one;
 #define UNIT_WORD(word, ours)
-#include "compiler/syntax/foreign_units.def"
+#include "compiler/units/foreign_units.def"
 #undef UNIT_WORD
 #undef FOREIGN_UNIT
   return {};
@@ -27,7 +27,7 @@ struct UnitWord {
 constexpr UnitWord kUnitWords[] = {
 #define FOREIGN_UNIT(spelling, one)
 #define UNIT_WORD(word, ours) {word, ours},
-#include "compiler/syntax/foreign_units.def"
+#include "compiler/units/foreign_units.def"
 #undef UNIT_WORD
 #undef FOREIGN_UNIT
 };

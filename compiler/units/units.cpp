@@ -1,5 +1,5 @@
 // Units and exact conversion. 128-bit integers hold every intermediate result: a mantissa has at most 16 digits, a factor 17.
-#include "compiler/config/units.hpp"
+#include "compiler/units/units.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ constexpr std::array kUnits = {
 #define UNIT(spelling, dimension, factor, offset, divisor) \
   Unit{spelling, vm::Dimension::dimension, factor, offset, divisor},
 #define UNIT_NAME(other, spelling)
-#include "compiler/config/units.def"
+#include "compiler/units/units.def"
 #undef UNIT_NAME
 #undef UNIT
 };
@@ -40,7 +40,7 @@ struct OtherName {
 constexpr std::array kOtherNames = {
 #define UNIT(spelling, dimension, factor, offset, divisor)
 #define UNIT_NAME(other, spelling) OtherName{other, spelling},
-#include "compiler/config/units.def"
+#include "compiler/units/units.def"
 #undef UNIT_NAME
 #undef UNIT
 };
