@@ -14,7 +14,7 @@ namespace robosync::tool {
 
 void add_bridge(Options& options) {
   struct BridgeOptions {
-    std::string port, key, mqtt, name = "robot";
+    std::string port, key, mqtt, name;
     std::optional<std::chrono::milliseconds> duration;
   };
   auto asked = std::make_shared<BridgeOptions>();
@@ -22,13 +22,15 @@ void add_bridge(Options& options) {
   add_port_option(options, asked->port);
   add_key_option(options, asked->key);
   options.option("--name", "ROBOT", asked->name,
-                 "its name there: topics begin with robosync/ROBOT; else robot");
+                 "its name there: topics begin with robosync/ROBOT; else its own name "
+                 "(robot.json), else robot");
   add_duration_option(options, "--duration", asked->duration, "how long; else until Ctrl-C");
   options.runs([asked] {
     const Mqtt::Place broker = parse_broker(asked->mqtt);
     const Place place{asked->port, asked->key};
     auto session = open_session(place);
-    Bridge bridge(broker, asked->name);
+    const std::string own = text_of(session->board.robot);
+    Bridge bridge(broker, !asked->name.empty() ? asked->name : !own.empty() ? own : "robot");
     Watch watch(session, place, {&bridge});
     watch.introduce();
     watch.show(asked->duration);

@@ -121,8 +121,9 @@ public:
   RunningBridge(const Device& device, const Broker& broker, const std::string& name,
                 const std::string& duration)
       : thread_([this, &device, &broker, name, duration] {
-          outcome = device.run(
-              {"bridge", "--mqtt", broker.place, "--name", name, "--duration", duration});
+          std::vector<std::string> asked{"bridge", "--mqtt", broker.place, "--duration", duration};
+          if (!name.empty()) asked.insert(asked.end(), {"--name", name});
+          outcome = device.run(asked);
         }) {}
   ~RunningBridge() {
     if (thread_.joinable()) thread_.join();
@@ -211,6 +212,20 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   CHECK_THAT(bridge.outcome.err,
              Contains("the broker is away") && Contains("looking for it again"));
   CHECK(late.wait_for("robosync/pet/online", "false"));
+}
+
+TEST_CASE("without --name, the topics begin with the robot's own name, if it has one") {
+  const Broker broker;
+  Subscriber subscriber(broker);
+  const Device device;
+  RunningBridge(device, broker, "", "500ms").join();
+  CHECK(subscriber.wait_for("robosync/robot/board", "\"robot\":null"));
+  json robot = json::parse(test::kRobot);
+  robot["name"] = "ada";
+  const std::string config = device.write("ada.json", robot.dump());
+  REQUIRE(device.run({"upload", device.program, "--config", config}).exit == 0);
+  RunningBridge(device, broker, "", "500ms").join();
+  CHECK(subscriber.wait_for("robosync/ada/board", "\"robot\":\"ada\""));
 }
 
 TEST_CASE("a broker knows which program runs, and has nothing of one that ran before") {

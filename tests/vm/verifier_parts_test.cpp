@@ -61,17 +61,79 @@ TEST_CASE("what measures when it is told is alone at its place on the bus") {
   check_accepted(seeing([](auto& eye) { ++eye.address; }));
 }
 
+namespace {
+
+// Its last sensor is a servo chip, which no actuator uses.
+ImageBuilder with_chip() {
+  ImageBuilder image = robot::make();
+  Sensor chip = image.sensors[0];
+  chip.driver = DriverId::pca9685;
+  chip.address = kFirstChipAddress;
+  chip.period_ms = kServoFrameMs;
+  chip.first_channel = static_cast<std::uint8_t>(image.channels.size());
+  chip.channel_count = 0;
+  chip.first_input = 36;
+  image.sensors.push_back(chip);
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("a servo chip has its place on the bus and its enable pin for itself") {
+  const auto changed = [](auto change) {
+    ImageBuilder image = with_chip();
+    change(image.sensors.back(), image);
+    return image;
+  };
+  const auto index = static_cast<std::uint16_t>(robot::make().sensors.size());
+  const auto refused = [&](Refusal refusal, auto change, unsigned more = 0) {
+    check_refused(changed(change),
+                  {refusal, Section::sensors, static_cast<std::uint16_t>(index + more)});
+  };
+  check_accepted(changed([](auto&, auto&) {}));
+  check_accepted(changed([](auto& chip, auto&) { chip.address = kLastAddress; }));
+  for (const int address : {kFirstChipAddress - 1, kLastAddress + 1, int{kAllChipsAddress}})
+    refused(Refusal::bad_value,
+            [&](auto& chip, auto&) { chip.address = static_cast<std::uint16_t>(address); });
+  refused(Refusal::bad_value, [](auto& chip, auto&) { ++chip.period_ms; });
+  refused(Refusal::bad_value, [](auto& chip, auto& image) {
+    image.channels.push_back(image.channels.back());
+    image.channels.back().sensor = static_cast<std::uint8_t>(image.sensors.size() - 1);
+    chip.channel_count = 1;
+  });
+  const auto same_place = [](auto& chip, auto& image) {
+    image.sensors[0].bus = chip.bus;
+    image.sensors[0].address = chip.address;
+  };
+  refused(Refusal::bad_value, same_place);
+  check_accepted(changed([&](auto& chip, auto& image) {
+    same_place(chip, image);
+    image.sensors[0].driver = DriverId::digital_input;  // its address is a pin
+  }));
+  const auto add_chips = [](auto& image, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) {
+      Sensor next = image.sensors.back();
+      ++next.address;
+      ++next.first_input;
+      image.sensors.push_back(next);
+    }
+  };
+  check_accepted(changed([&](auto&, auto& image) { add_chips(image, kMaxServoChips - 1); }));
+  refused(
+      Refusal::too_many, [&](auto&, auto& image) { add_chips(image, kMaxServoChips); },
+      kMaxServoChips);
+  refused(
+      Refusal::shared_pin,
+      [&](auto&, auto& image) {
+        add_chips(image, 1);
+        --image.sensors.back().first_input;
+      },
+      1);
+}
+
 TEST_CASE("a channel of a servo chip has one owner, and what a chip moves is safe in one way") {
   const auto with_servos = [](auto change) {
-    ImageBuilder image = robot::make();
-    Sensor chip = image.sensors[0];
-    chip.driver = DriverId::pca9685;
-    chip.address = kFirstChipAddress;
-    chip.period_ms = kServoFrameMs;
-    chip.first_channel = static_cast<std::uint8_t>(image.channels.size());
-    chip.channel_count = 0;
-    chip.first_input = 36;
-    image.sensors.push_back(chip);
+    ImageBuilder image = with_chip();
     for (unsigned a = 0; a < 2; ++a) {
       image.actuators[a].driver = DriverId::pca9685_servo;
       image.actuators[a].bus = static_cast<std::uint8_t>(image.sensors.size() - 1);
@@ -79,14 +141,23 @@ TEST_CASE("a channel of a servo chip has one owner, and what a chip moves is saf
       image.actuators[a].on_release = Release::hold;
       image.actuators[a].safe = Release::hold;
     }
-    change(image.actuators[1]);
+    change(image.actuators[1], image.actuators[0]);
     return image;
   };
-  check_accepted(with_servos([](auto&) {}));
-  check_refused(with_servos([](auto& servo) { servo.pin = 0; }),
+  check_accepted(with_servos([](auto&...) {}));
+  check_refused(with_servos([](auto& servo, auto&) { servo.pin = 0; }),
                 {Refusal::shared_pin, Section::actuators, 1});
-  check_refused(with_servos([](auto& servo) { servo.safe = Release::coast; }),
+  check_refused(with_servos([](auto& servo, auto&) { servo.safe = Release::coast; }),
                 {Refusal::needs_the_bus, Section::actuators, 1});
+  check_refused(
+      with_servos([](auto& servo, auto& other) { servo.safe = other.safe = Release::rest; }),
+      {Refusal::needs_the_bus, Section::actuators, 0});
+  check_accepted(with_servos([](auto& servo, auto&) { servo.pin = kChipChannels - 1; }));
+  for (const auto& wrong : std::vector<std::function<void(Actuator&, Actuator&)>>{
+           [](auto&servo, auto&) { servo.pin = kChipChannels; },
+           [](auto&servo, auto&) { servo.bus = 0; },     // a sensor that is no chip
+           [](auto&servo, auto&) { servo.bus = 100; }})  // no sensor
+    check_refused(with_servos(wrong), {Refusal::bad_index, Section::actuators, 1});
 }
 
 TEST_CASE("a face is on a display, which is alone at its place on the bus") {
