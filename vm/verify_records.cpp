@@ -473,8 +473,9 @@ Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
                                          (reserved[0] | reserved[1] | reserved[2]) == 0);
 }
 
-Refusal check_robot(Walk&, const Robot& robot, std::size_t) {
-  return good_or(Refusal::bad_value, robot.reserved == 0);
+Refusal check_robot(Walk& walk, const Robot& robot, std::size_t) {
+  const std::size_t length = walk.image.string(robot.name).size();
+  return good_or(Refusal::bad_value, length <= kMaxRobotName && robot.reserved == 0);
 }
 
 // The tracks of the motions follow each other without gaps, and so do the keys of the tracks. Tracks

@@ -27,7 +27,6 @@ public:
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
     records_ = make_records(written, robot, tables, strings_);
     add_algorithms(robot, tables);
-    if (!robot.name.empty()) robots_.push_back({strings_.offset(robot.name), 0});
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
@@ -48,7 +47,6 @@ private:
   Strings strings_;
   Records records_;
   RuleSections rules_;
-  std::vector<vm::Robot> robots_;
   std::vector<vm::Value> constants_;
   std::vector<vm::SourceLine> lines_;
   vm::ImageHeader header_{};
@@ -116,7 +114,7 @@ vm::Image Emitter::sections() const {
   image.behaviors = rules_.behaviors;
   image.modifiers = rules_.modifiers;
   image.adaptations = records_.adaptations;
-  image.robots = robots_;
+  image.robots = records_.robots;
   image.motions = records_.motions;
   image.tracks = records_.tracks;
   image.keys = records_.keys;

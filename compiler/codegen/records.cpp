@@ -44,6 +44,7 @@ public:
     if (robot_.scheduler && robot_.scheduler->alpha > 0)
       records_.adaptations.push_back(
           {robot_.scheduler->alpha, robot_.scheduler->window_ms, robot_.scheduler->cap, {}});
+    if (!robot_.name.empty()) records_.robots.push_back({strings_.offset(robot_.name), 0});
     return std::move(records_);
   }
 

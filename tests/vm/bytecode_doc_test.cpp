@@ -81,6 +81,19 @@ TEST_CASE("docs/bytecode.md has the opcodes of opcodes.def") {
   check_generated("opcodes", opcode_table());
 }
 
+TEST_CASE("docs/bytecode.md has the sections of sections.def, in their order") {
+  const std::string page =
+      robosync::testing::read_file(std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "docs/bytecode.md");
+  std::size_t at = 0;
+  for (std::size_t s = 1; describe(static_cast<Section>(s)) != "an unknown section"; ++s) {
+    const std::string row = "| " + std::string(describe(static_cast<Section>(s))) + " | `";
+    CAPTURE(row);
+    at = page.find(row, at);
+    REQUIRE(at != std::string::npos);
+  }
+  CHECK(at != 0);
+}
+
 TEST_CASE("docs/bytecode.md has the refusals of refusals.def") {
   check_generated("refusals", refusal_table());
 }

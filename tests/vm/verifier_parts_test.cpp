@@ -11,6 +11,23 @@ using namespace robosync::vm;
 using namespace robosync::vm::test;
 namespace robot = robosync::vm::test::companion;
 
+namespace {
+
+// Its last sensor is this device, without channels, on the bus of the first one.
+ImageBuilder with_device(DriverId driver, std::uint16_t address, std::uint16_t period_ms) {
+  ImageBuilder image = robot::make();
+  Sensor device = image.sensors[0];
+  device.driver = driver;
+  device.address = address;
+  device.period_ms = period_ms;
+  device.first_channel = static_cast<std::uint8_t>(image.channels.size());
+  device.channel_count = 0;
+  image.sensors.push_back(device);
+  return image;
+}
+
+}  // namespace
+
 TEST_CASE(
     "a panel has its pin for itself, is the only one, and takes no more than a board can give") {
   const auto with_panel = [](auto change) {
@@ -45,13 +62,8 @@ TEST_CASE(
 
 TEST_CASE("what measures when it is told is alone at its place on the bus") {
   const auto seeing = [](auto change) {
-    ImageBuilder image = robot::make();
-    Sensor eye = image.sensors[0];
-    eye.driver = DriverId::vl53l0x;
-    eye.period_ms = kMinRangingPeriodMs;
-    eye.first_channel = static_cast<std::uint8_t>(image.channels.size());
-    eye.channel_count = 0;
-    image.sensors.push_back(eye);
+    const std::uint16_t same = robot::make().sensors[0].address;
+    ImageBuilder image = with_device(DriverId::vl53l0x, same, kMinRangingPeriodMs);
     change(image.sensors.back());
     return image;
   };
@@ -65,15 +77,8 @@ namespace {
 
 // Its last sensor is a servo chip, which no actuator uses.
 ImageBuilder with_chip() {
-  ImageBuilder image = robot::make();
-  Sensor chip = image.sensors[0];
-  chip.driver = DriverId::pca9685;
-  chip.address = kFirstChipAddress;
-  chip.period_ms = kServoFrameMs;
-  chip.first_channel = static_cast<std::uint8_t>(image.channels.size());
-  chip.channel_count = 0;
-  chip.first_input = 36;
-  image.sensors.push_back(chip);
+  ImageBuilder image = with_device(DriverId::pca9685, kFirstChipAddress, kServoFrameMs);
+  image.sensors.back().first_input = 36;
   return image;
 }
 
@@ -153,23 +158,17 @@ TEST_CASE("a channel of a servo chip has one owner, and what a chip moves is saf
       with_servos([](auto& servo, auto& other) { servo.safe = other.safe = Release::rest; }),
       {Refusal::needs_the_bus, Section::actuators, 0});
   check_accepted(with_servos([](auto& servo, auto&) { servo.pin = kChipChannels - 1; }));
-  for (const auto& wrong : std::vector<std::function<void(Actuator&, Actuator&)>>{
-           [](auto&servo, auto&) { servo.pin = kChipChannels; },
-           [](auto&servo, auto&) { servo.bus = 0; },     // a sensor that is no chip
-           [](auto&servo, auto&) { servo.bus = 100; }})  // no sensor
+  const auto nowhere = [&](auto wrong) {
     check_refused(with_servos(wrong), {Refusal::bad_index, Section::actuators, 1});
+  };
+  nowhere([](auto& servo, auto&) { servo.pin = kChipChannels; });
+  nowhere([](auto& servo, auto&) { servo.bus = 0; });  // a sensor that is no chip
+  nowhere([](auto& servo, auto&) { servo.bus = 100; });
 }
 
 TEST_CASE("a face is on a display, which is alone at its place on the bus") {
   const auto with_face = [](auto change) {
-    ImageBuilder image = robot::make();
-    Sensor display = image.sensors[0];
-    display.driver = DriverId::ssd1306;
-    display.address = kFirstDisplayAddress;
-    display.period_ms = kDisplayFrameMs;
-    display.first_channel = static_cast<std::uint8_t>(image.channels.size());
-    display.channel_count = 0;
-    image.sensors.push_back(display);
+    ImageBuilder image = with_device(DriverId::ssd1306, kFirstDisplayAddress, kDisplayFrameMs);
     Actuator& face = image.actuators[0];
     face.driver = DriverId::ssd1306_face;
     face.bus = static_cast<std::uint8_t>(image.sensors.size() - 1);

@@ -529,11 +529,15 @@ TEST_CASE("robot: none or one, and it has a name") {
   const auto with = [](std::vector<Robot> robots) {
     return [robots](auto& image) { image.robots = robots; };
   };
-  check_accepted([&] {
+  const auto called = [](std::size_t length) {
     ImageBuilder image = robot::make();
-    image.robots = {{0, 0}};
+    image.robots = {{image.name(std::string(length, 'x')), 0}};
     return image;
-  }());
+  };
+  check_accepted(called(1));
+  check_accepted(called(kMaxRobotName));
+  check_refused([&](auto& image) { image = called(kMaxRobotName + 1); },
+                {Refusal::bad_value, Section::robots, 0});
   check_refused(with({{0, 0}, {0, 0}}), {Refusal::bad_value, Section::header, 0});
   check_refused(with({{0, 1}}), {Refusal::bad_value, Section::robots, 0});
   check_refused(with({{0x7FFF, 0}}), {Refusal::bad_string, Section::robots, 0});

@@ -214,6 +214,10 @@ TEST_CASE("a board without analog inputs says so, and which boards have some") {
                                    "`mps2-an386` and `nucleo-l476rg`"));
 }
 
+TEST_CASE("the schema bounds a robot's name as the image does") {
+  CHECK(schema().at("properties").at("name").at("maxLength") == vm::kMaxRobotName);
+}
+
 TEST_CASE("the schema has exactly the reader's keys") {
   for (const Object object :
        {Object::robot, Object::sensor, Object::channel, Object::actuator, Object::sound,
