@@ -175,7 +175,10 @@ private:
   void missing() {
     const TokenKind kind = edit_.inserted.front().kind;
     if (kind == Kinds::END) return not_closed(1);
-    if (kind == Kinds::NEWLINE) return line_goes_on();
+    if (kind == Kinds::NEWLINE) {
+      if (!unit_apart()) line_goes_on();
+      return;
+    }
     if ((kind == Kinds::TIMES && bare_brackets()) || then_for_do(kind)) return;
     const std::string what = what_is_missing(kind, *edit_.expected);
     const std::string where = after(edit_.at);
@@ -318,15 +321,16 @@ private:
     const std::string_view foreign = foreign_unit(unit);
     const std::string_view ours = known != nullptr ? known->spelling : unit_word(unit);
     if (ours.empty() && foreign.empty()) return false;
-    Diagnostic& message =
-        diagnostics_.report(Code::E0009, quote(edit_.at) + " does not belong here")
-            .label(tokens_[edit_.at].span);
+    std::string why = "a unit follows its number without a space";
+    if (!foreign.empty())
+      why = quote(edit_.at) + " does not belong here";
+    else if (known == nullptr)
+      why = "this unit is written `" + std::string(ours) + "` in RSL";
+    Diagnostic& message = diagnostics_.report(Code::E0009, why).label(tokens_[edit_.at].span);
     if (!foreign.empty()) {
       message.helps("RSL does not have this unit: " + std::string(foreign));
       return true;
     }
-    message.message = known != nullptr ? "a unit follows its number without a space"
-                                       : "this unit is written `" + std::string(ours) + "` in RSL";
     const std::string better = digits + std::string(ours);
     message.helps("write `" + better + "`")
         .fix({number.span.file, number.span.begin, tokens_[edit_.at].span.end}, better,
