@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/source/utf8.hpp"
 #include "link/messages.hpp"
 #include "vm/image.hpp"
 
@@ -30,9 +31,9 @@ namespace robosync::tool {
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleKind::count_)>
     kRuleKinds = {"when", "when/else", "while", "every", "at start", "watch", "safety", "resume"};
 
-// A NUL-padded name from the wire.
+// A NUL-padded name from the wire. It is not trusted: a terminal would obey control characters.
 [[nodiscard]] inline std::string text_of(const link::Name& name) {
-  return {name.begin(), std::find(name.begin(), name.end(), '\0')};
+  return compiler::utf8::printable({name.begin(), std::find(name.begin(), name.end(), '\0')});
 }
 
 // A program's hash, as shown to people.

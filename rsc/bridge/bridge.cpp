@@ -11,6 +11,7 @@
 
 #include "compiler/source/utf8.hpp"
 #include "rsc/bridge/topics.hpp"
+#include "rsc/device/introduction.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/trace/channels.hpp"
 
@@ -73,16 +74,7 @@ void Bridge::online(bool is) {
 
 void Bridge::board(const link::HelloReply& board, const Past& past,
                    const std::vector<OnBus>& silent) {
-  publish("board",
-          {{"name", tool::text_of(board.board)},
-           {"robot", robot_json(board)},
-           {"uptime_us", past.status.uptime_us},
-           {"reset_reason", reset_reason(past.status)},
-           {"faults", past.status.faults},
-           {"last_fault", last_fault_json(past)},
-           {"owner", owner_json(past.owner)},
-           {"silent", devices_json(silent)}},
-          true);
+  publish("board", introduction_json(board, past, silent), true);
   stopped(board.stopped != 0);
 }
 

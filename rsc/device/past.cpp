@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/device/session.hpp"
-#include "rsc/names.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -20,11 +19,6 @@ Json registers(const link::Fault& fault) {
 }
 
 }  // namespace
-
-nlohmann::ordered_json robot_json(const link::HelloReply& board) {
-  const std::string name = text_of(board.robot);
-  return name.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(name);
-}
 
 std::string_view reset_reason(const link::Status& status) {
   switch (status.reset_reason) {

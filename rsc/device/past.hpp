@@ -21,8 +21,6 @@ struct Past {
   link::Fault fault;        // the last one that the board has kept, possibly from before it started
 };
 
-// The robot's own name; null if it has none.
-[[nodiscard]] nlohmann::ordered_json robot_json(const link::HelloReply& board);
 [[nodiscard]] std::string_view reset_reason(const link::Status& status);
 // "12.345 s (reset: watchdog), 1 activations, 0 faults"
 [[nodiscard]] std::string past_text(const link::Status& status);

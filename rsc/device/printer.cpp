@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "rsc/device/introduction.hpp"
 #include "rsc/failure.hpp"
 
 namespace robosync::tool {
@@ -22,16 +23,9 @@ void print(const Json& line) {
 void Printer::board(const link::HelloReply& board, const Past& past,
                     const std::vector<OnBus>& silent) {
   if (format_ == Format::json) {
-    print({{"event", "board"},
-           {"name", text_of(board.board)},
-           {"robot", robot_json(board)},
-           {"uptime_us", past.status.uptime_us},
-           {"reset_reason", reset_reason(past.status)},
-           {"faults", past.status.faults},
-           {"last_fault", last_fault_json(past)},
-           {"owner", owner_json(past.owner)},
-           {"silent", devices_json(silent)}});
-    return;
+    Json line{{"event", "board"}};
+    line.update(introduction_json(board, past, silent));
+    return print(line);
   }
   std::cout << fmt::format("        board  {}, up {}{}\n", text_of(board.board),
                            past_text(past.status),

@@ -358,17 +358,6 @@ std::vector<std::string> obstacles(const link::HelloReply& board, const vm::Imag
   return found;
 }
 
-std::optional<std::string> other_robot(const link::HelloReply& board, const vm::Image& image) {
-  const std::string here = text_of(board.robot);
-  const std::string_view meant = image.robot_name().substr(0, vm::kMaxRobotName);
-  if (meant.empty() || here.empty() || meant == here) return std::nullopt;
-  return fmt::format(
-      "this robot is \"{}\", and the program is for \"{}\", says \"name\" in its robot.json: "
-      "choose another "
-      "--port; with --anyway this robot is \"{}\" from now on",
-      here, meant, meant);
-}
-
 UploadResult upload(Client& client, const link::HelloReply& /*hello*/,
                     std::span<const std::byte> image, const UploadOptions& options) {
   const auto start = client.now();
@@ -383,9 +372,19 @@ UploadResult upload(Client& client, const link::HelloReply& /*hello*/,
 
 namespace {
 
-void check_board(const Session& session, const Program& program, bool to_any_robot) {
-  const auto other = to_any_robot ? std::nullopt : other_robot(session.board, program.image());
-  if (other) throw Refused(*other);
+// One without a name may be any.
+void check_robot(const link::HelloReply& board, const vm::Image& image) {
+  const std::string here = text_of(board.robot);
+  const std::string_view meant = image.robot_name();
+  if (meant.empty() || here.empty() || meant == here) return;
+  throw Refused(
+      fmt::format("this robot is \"{}\", and the program is for \"{}\", says its robot.json "
+                  "(`name`): choose another --port; "
+                  "`rsc upload --anyway` gives this robot the name \"{}\"",
+                  here, meant, meant));
+}
+
+void check_board(const Session& session, const Program& program) {
   const std::vector<std::string> found = obstacles(session.board, program.image());
   if (found.empty()) return;
   throw Refused(fmt::format("the board ({}, firmware {}) cannot run this program:\n  {}",
@@ -439,7 +438,8 @@ UploadResult send(Session& session, const Program& program, std::span<const std:
   if (at_once) transfer.begin(sizeof(link::Hello) + kBeside);
   session.greet();
   course.old = still_running(session.board, is_news);
-  check_board(session, program, options.to_any_robot);
+  if (!options.to_any_robot) check_robot(session.board, program.image());
+  check_board(session, program);
   if (options.replace && session.board.running != 0) end_running(session, course);
   if (!options.base.empty() && vm::stated_name(options.base) != session.board.program_hash)
     transfer.forget_base();

@@ -24,8 +24,8 @@ struct UploadOptions {
   bool replace = false;                // end the running program first, to free its memory
   bool fresh = false;                  // its variables start as the program says
   std::chrono::milliseconds trial{0};  // how long it is on trial; 0: the board's default
-  bool to_any_robot = false;           // also to one with another name than the program's robot
   bool confirm = true;                 // false: after the trial the kept program comes back
+  bool to_any_robot = false;           // also to one with another name than the program's robot
   std::span<const std::byte> base;     // what probably runs there: only the difference is sent
 };
 
@@ -44,10 +44,6 @@ struct UploadResult {
 // Why `image` cannot run on this board, one sentence for each reason; empty if it can.
 [[nodiscard]] std::vector<std::string> obstacles(const link::HelloReply& board,
                                                  const vm::Image& image);
-
-// Why `image` is for another robot than the one on the line: both have names, and they differ.
-[[nodiscard]] std::optional<std::string> other_robot(const link::HelloReply& board,
-                                                     const vm::Image& image);
 
 // Transfers the image (its header names it) and activates it. `hello` is the board's answer. The result says whether the program
 // runs. Throws Failure (outside) if the board does not answer in time, with what runs then, and Refused if the image is too large

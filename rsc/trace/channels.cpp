@@ -59,6 +59,14 @@ bool is_channel(std::string_view name, std::string_view sensor, std::string_view
          (channel.empty() || compiler::ascii::same(name.substr(dot + 1), channel));
 }
 
+// The sensor's channels in robot.json, also those that the program does not read.
+std::vector<std::string> channels_of(const Program& program, std::string_view sensor) {
+  std::vector<std::string> names;
+  for (const auto& [name, unit] : program.origin().units.channels)
+    if (is_channel(name, sensor, {})) names.push_back(name.substr(name.find('.') + 1));
+  return names;
+}
+
 struct DottedName {
   std::string_view sensor, channel;
 };
@@ -93,11 +101,8 @@ std::optional<std::uint8_t> find_read_channel(const Program& program, std::strin
   const auto meant = [&](const auto& entry) {
     return is_channel(entry.first, name.sensor, name.channel);
   };
-  std::vector<std::string> all;  // of this sensor, also those that the program does not read
-  if (name.channel.empty())
-    for (const auto& [full, unit] : program.origin().units.channels)
-      if (is_channel(full, name.sensor, {})) all.push_back(full.substr(full.find('.') + 1));
-  if (all.size() > 1) has_several(name.sensor, all);
+  const std::vector<std::string> all = channels_of(program, name.sensor);
+  if (name.channel.empty() && all.size() > 1) has_several(name.sensor, all);
   const vm::Image& image = program.image();
   const bool read = std::ranges::any_of(image.channels, [&](const vm::Channel& candidate) {
     return compiler::ascii::same(image.string(image.sensors[candidate.sensor].name), name.sensor) &&

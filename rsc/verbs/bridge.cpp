@@ -29,8 +29,10 @@ void add_bridge(Options& options) {
     const Mqtt::Place broker = parse_broker(asked->mqtt);
     const Place place{asked->port, asked->key};
     auto session = open_session(place);
-    const std::string own = text_of(session->board.robot);
-    Bridge bridge(broker, !asked->name.empty() ? asked->name : !own.empty() ? own : "robot");
+    std::string name = asked->name;
+    if (name.empty()) name = text_of(session->board.robot);
+    if (name.empty()) name = "robot";
+    Bridge bridge(broker, name);
     Watch watch(session, place, {&bridge});
     watch.introduce();
     watch.show(asked->duration);

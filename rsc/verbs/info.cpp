@@ -12,6 +12,7 @@
 
 #include "rsc/console.hpp"
 #include "rsc/device/devices.hpp"
+#include "rsc/device/introduction.hpp"
 #include "rsc/device/keeping.hpp"
 #include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"

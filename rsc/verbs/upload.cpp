@@ -83,8 +83,9 @@ void add_upload(Options& options) {
   options.flag("--replace", asked->replace,
                "end the running program first, if the board has no room for both");
   options.flag("--fresh", asked->fresh, "variables start as the program says");
-  options.flag("--anyway", asked->anyway,
-               "even if it is too much for the board, which may refuse it");
+  options.flag(
+      "--anyway", asked->anyway,
+      "even if it is too much for the board, which may refuse it, or is for another robot");
   options.flag("--take", asked->take, "take the line from a host that is uploading");
   add_format_option(options, asked->format);
   options.runs([asked] {

@@ -90,6 +90,11 @@ TEST_CASE("something that sends, but is no RoboSync firmware, is named") {
   }
 }
 
+TEST_CASE("a name from the line cannot command a terminal") {
+  const link::Name name{'a', '\x1B', '[', '2', 'J', '\0', 'b'};
+  CHECK(tool::text_of(name) == "a\xEF\xBF\xBD[2J");
+}
+
 TEST_CASE("firmware of another protocol version is named by every verb, also by stop") {
   const RobotFolder robot;
   const Talker talker(listen_at(robot.path("old")), old_firmware());

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "compiler/config/robot.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 
@@ -185,8 +186,8 @@ TEST_CASE("measurements end before the image that says where they are is overwri
 namespace {
 
 constexpr std::uint16_t kBumper = 40;
-constexpr unsigned kSampleMs = 20;  // of a button
-constexpr unsigned kWaitMs = 100;   // for the readings of SAFETY rules
+constexpr unsigned kSampleMs = 20;                      // of a button
+constexpr unsigned kWaitMs = compiler::kSafetyStartMs;  // for the readings of SAFETY rules
 const char* const kGuardedProgram =
     "SAFETY crash\n  WHEN bumper IS PRESSED\n  DO STOP motor\n  RESUME WHEN NOT bumper IS "
     "PRESSED\nEND\n"
