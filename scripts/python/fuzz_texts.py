@@ -13,8 +13,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/fuzz"))
+import make_seeds  # noqa: E402  (found by the line before)
+
 TEXTS = ROOT / "tests/fuzz/texts"
 BUILT = ROOT / "build/host-fuzz/tests/fuzz/texts"
+RSC = ROOT / "build/host-fuzz/rsc"
 LEARNED = ROOT / "build/fuzz/texts"
 FOUND = ROOT / "build/fuzz/found"
 EXAMPLES = {"rsl": "*.rsl", "robot": "robot.json", "scenario": "*.json"}
@@ -33,10 +37,22 @@ def words():
     return sorted({*keywords, *keys})
 
 
+def images(folder):
+    """The images that the fuzzer of the verifier starts with, too: of the examples and of drawn programs."""
+    make_seeds.make(RSC, LEARNED / "compiled")
+    for old in folder.iterdir():
+        old.unlink()
+    for path in (LEARNED / "compiled").glob("*.rsb"):
+        (folder / path.name).write_bytes(path.read_bytes())
+    return folder
+
+
 def starts_of(name):
     """Copies of the examples, in their own folder: a corpus is a folder."""
     folder = LEARNED / f"{name}-examples"
     folder.mkdir(parents=True, exist_ok=True)
+    if name == "image":
+        return images(folder)
     for path in (ROOT / "examples").rglob(EXAMPLES[name]) if name in EXAMPLES else ():
         (folder / "-".join(path.relative_to(ROOT).parts)).write_bytes(path.read_bytes())
     return folder

@@ -1,13 +1,10 @@
 // See targets.hpp.
 #include "tests/fuzz/texts/targets.hpp"
 
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include <unistd.h>
 
@@ -21,7 +18,6 @@
 #include "rsc/program.hpp"
 #include "rsc/trace/scenario.hpp"
 #include "tests/fuzz/texts/require.hpp"
-#include "vm/disassembler.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::fuzz {
@@ -105,18 +101,6 @@ void scenario(std::string_view input) {
     require(*failure.what() != '\0', "a failure says nothing");
   }
   std::filesystem::remove(file);
-}
-
-void image(std::string_view input) {
-  // Where its words are aligned, as everybody puts it.
-  std::vector<std::uint64_t> words((input.size() + 7) / 8);
-  const std::span bytes(reinterpret_cast<std::byte*>(words.data()), input.size());
-  input.copy(reinterpret_cast<char*>(bytes.data()), input.size());
-  vm::Image view;
-  if (!vm::verify(bytes, vm::Limits{}, view).ok()) return;
-  std::array<char, 128> line{};
-  for (const vm::Word word : view.code)
-    (void)vm::disassemble(view, word, line);
 }
 
 void lsp(std::string_view input) {
