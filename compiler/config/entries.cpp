@@ -87,7 +87,7 @@ const WiringType* type_of(const Device& device) {
 }
 
 std::string what_it_does(bool is_sensor) {
-  return is_sensor ? "its readings come over the link" : "its commands are shown over the link";
+  return is_sensor ? "its readings come over the link" : "its commands are sent over the link";
 }
 
 void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnostics) {
