@@ -152,7 +152,7 @@ def main():
         print(f"first-board: {error}", file=sys.stderr)
         return 3
     print(f"\n{table.failed} not as they should be. What you have to look at yourself: docs/boards.md, "
-          "\"The first one who has a board\".")
+          "\"First tests\" of this board.")
     return 1 if table.failed else 0
 
 
