@@ -255,9 +255,11 @@ TEST_CASE(
     CHECK(us_of(board, 20, vl53l0x, 1, 50) == us(4, 27));
     CHECK(us_of(board, 20, hts221, 2, 200) == us(4, 41));
     CHECK(us_of(board, 20, digital_input, 1, 20) == 0);
-    // As docs/boards.md says.
     CHECK(us_of(board, 4, lsm6dsl, 7, 20) == 0);
     CHECK(us_of(board, 5, lsm6dsl, 7, 20) != 0);
+    // As docs/boards.md says.
+    CHECK(us_of(board, 3, mpu6050, 7, 20) == 0);
+    CHECK(us_of(board, 4, mpu6050, 7, 20) != 0);
     CHECK(us_of(board, 1, max34451, 11, 20) == 0);
     CHECK(us_of(board, 1, max34451, 12, 20) != 0);
   }
