@@ -29,6 +29,7 @@ struct ChannelConfig {
   Scale scale;                  // one raw count
   std::uint16_t period_ms = 0;  // 0: only when fed
   std::uint16_t stale_ms = 0;   // 0: never stale
+  bool stale_by_rate = false;   // stale_ms follows from the rate: "stale_after" is not given
   // For a channel whose values are words: value n is label n. Its range is then 0 … labels - 1.
   std::vector<std::string> labels;
   bool truth = false;  // its two labels mean false and true: it may be a condition on its own

@@ -124,9 +124,12 @@ void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& chan
     channel.period_ms = read_rate(*rate, diagnostics).value_or(channel.period_ms);
     channel.stale_ms =
         static_cast<std::uint16_t>(std::min(channel.period_ms * kStalePeriods, UINT16_MAX));
+    channel.stale_by_rate = true;
   }
-  if (const auto* stale = fields.find("stale_after"))
+  if (const auto* stale = fields.find("stale_after")) {
     channel.stale_ms = read_milliseconds(*stale, diagnostics).value_or(channel.stale_ms);
+    channel.stale_by_rate = false;
+  }
   if (const auto* scale = fields.find("scale"))
     channel.scale = read_scale(*scale, *channel.unit, diagnostics).value_or(channel.scale);
   if (const auto* offset = fields.find("offset"))
@@ -206,7 +209,7 @@ void read_register(const json::Value& value, const Device& device, SensorConfig&
 void make_fed(SensorConfig& sensor, const json::Value* channels, Diagnostics& diagnostics) {
   sensor.driver = vm::DriverId::virtual_sensor;
   for (ChannelConfig& channel : sensor.channels) {
-    if (channel.stale_ms == channel.period_ms * 5) channel.stale_ms = 0;
+    if (channel.stale_by_rate) channel.stale_ms = 0;
     channel.period_ms = 0;
   }
   if (channels == nullptr) return;

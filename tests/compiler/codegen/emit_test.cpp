@@ -306,6 +306,19 @@ TEST_CASE("what is fed is neither sampled nor stale") {
   CHECK(image.actuators[0].pin == 90);
 }
 
+TEST_CASE("what is fed is stale when robot.json says so, also after five periods of its rate") {
+  const auto stale_ms = [](const std::string& channel) {
+    const std::string robot =
+        R"({"sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": )" + channel +
+        R"(}}], "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "servo"}]})";
+    return view(compile_text(rule("touch LEVEL > 3", "MOVE arm SLOWLY"), robot)).channels[0].stale_ms;
+  };
+  CHECK(stale_ms(R"({"rate": "10Hz", "stale_after": "500ms"})") == 500);
+  CHECK(stale_ms(R"({"rate": "10Hz", "stale_after": "501ms"})") == 501);
+  CHECK(stale_ms(R"({"stale_after": "100ms"})") == 100);
+  CHECK(stale_ms(R"({"rate": "10Hz"})") == 0);
+}
+
 TEST_CASE("a bare number added to a Fahrenheit channel is a difference") {
   const std::string robot = R"({
     "sensors": [{"name": "oven", "type": "VIRTUAL", "channels": {"HEAT": {"unit": "F"}}}],
