@@ -47,6 +47,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/functions.cpp
   sema/limits.cpp
   sema/lints.cpp
+  sema/waiting_commands.cpp
   sema/lists.cpp
   sema/motions.cpp
   sema/number_lists.cpp
@@ -102,6 +103,6 @@ target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # As in the front end, the code that words diagnostics is optimised for size.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
-    sema/whole_commands.cpp
+    sema/waiting_commands.cpp sema/whole_commands.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

@@ -49,6 +49,13 @@ inline constexpr unsigned kMaxCells = 255;          // frame cells of a behaviou
 inline constexpr unsigned kMaxKept = 16;            // KEPT variables: stored as one small record
 inline constexpr unsigned kMaxRobotName = 15;       // bytes
 inline constexpr unsigned kMaxResponseOutput = 64;  // output words of a response in one step
+inline constexpr unsigned kMaxQueued = 8;           // commands that wait for one actuator
+// … and for all the actuators of an image.
+constexpr unsigned max_queued(unsigned actuators) {
+  const unsigned each = kMaxQueued * actuators;
+  const unsigned together = 16 + 2 * actuators;
+  return each < together ? each : together;
+}
 
 enum class Dimension : std::uint8_t {
 #define DIMENSION(name, unit, doc) name,

@@ -7,6 +7,7 @@
 #include "compiler/sema/lints.hpp"
 #include "compiler/sema/rules.hpp"
 #include "compiler/sema/variables.hpp"
+#include "compiler/sema/waiting_commands.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -45,7 +46,8 @@ public:
     statements_.check_unused_defines();
     motions_.check_unused();
     program_.behaviors = behaviors_.finish();
-    // After errors, some uses may be missing.
+    // After errors, some commands and uses may be missing.
+    if (diagnostics_.errors() == 0) check_waiting_commands(program_, names_, diagnostics_);
     if (diagnostics_.errors() == 0) lint();
     return std::move(program_);
   }

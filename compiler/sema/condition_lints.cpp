@@ -87,19 +87,38 @@ void lint_between(const Typed& value, const Typed& low, const Typed& high, Span 
   label_range(report_decided(!never, span, diagnostics), value);
 }
 
+namespace {
+
+bool stays_true(ast::Relation relation, const Typed& left, const Typed& right, std::int64_t by) {
+  return is_below(relation) ? left.high <= right.low + by : left.low >= right.high - by;
+}
+
+Diagnostic& report_stays(const Typed& margin, Diagnostics& diagnostics) {
+  return diagnostics
+      .report(Code::W0210, "once this is true, it stays true: no value gets past it by the MARGIN")
+      .label(margin.span);
+}
+
+}  // namespace
+
 void lint_margin(ast::Relation relation, const Typed& left, const Typed& right, const Typed& margin,
                  Diagnostics& diagnostics) {
   if (decided(relation, left, right)) return;
-  const std::int64_t by = margin.code.constant;
-  const bool stays = is_below(relation) ? left.high <= right.low + by : left.low >= right.high - by;
-  if (!stays) return;
-  Diagnostic& d =
-      diagnostics
-          .report(Code::W0210,
-                  "once this is true, it stays true: no value gets past it by the MARGIN")
-          .label(margin.span);
+  if (!stays_true(relation, left, right, margin.code.constant)) return;
+  Diagnostic& d = report_stays(margin, diagnostics);
   label_range(d, left);
   label_range(d, right);
+}
+
+void lint_margin(const Typed& value, const Typed& low, const Typed& high, const Typed& margin,
+                 Diagnostics& diagnostics) {
+  const auto above = decided(ast::Relation::greater_equal, value, low);
+  const auto below = decided(ast::Relation::less_equal, value, high);
+  if (above == false || below == false || (above && below)) return;
+  const std::int64_t by = margin.code.constant;
+  if (stays_true(ast::Relation::greater_equal, value, low, by) &&
+      stays_true(ast::Relation::less_equal, value, high, by))
+    label_range(report_stays(margin, diagnostics), value);
 }
 
 void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics) {

@@ -19,6 +19,9 @@ void lint_logic(ast::LogicOp op, const Expression& left, const Expression& right
 // A comparison that stays true for ever because of its MARGIN.
 void lint_margin(ast::Relation relation, const Typed& left, const Typed& right, const Typed& margin,
                  Diagnostics& diagnostics);
+// … and an IS BETWEEN.
+void lint_margin(const Typed& value, const Typed& low, const Typed& high, const Typed& margin,
+                 Diagnostics& diagnostics);
 // A step of CHANGES BY that is wider than the number's range.
 void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics);
 

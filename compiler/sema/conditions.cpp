@@ -246,6 +246,22 @@ Expression Expressions::compare(ast::Relation relation, Typed left, Typed right)
   return make_binary(Operation::latch, std::move(enter), std::move(stay));
 }
 
+// One condition: with a MARGIN it becomes true between the numbers, and stays true up to the MARGIN beyond either.
+Expression Expressions::between(Typed value, Typed same, Typed low, Typed high) {
+  const bool sticks = takes_margin(value, low) || takes_margin(same, high);
+  if (sticks && !is_given()) lint_margin(value, low, high, margin_->value, diagnostics_);
+  Expression above =
+      make_binary(Operation::greater_equal, std::move(value.code), std::move(low.code));
+  Expression below = make_binary(Operation::less_equal, std::move(same.code), std::move(high.code));
+  if (!sticks) return make_binary(Operation::logical_and, std::move(above), std::move(below));
+  const vm::Value by = margin_->value.code.constant;
+  Expression stay =
+      make_binary(Operation::logical_and, stay_condition(above, by), stay_condition(below, by));
+  return make_binary(Operation::latch,
+                     make_binary(Operation::logical_and, std::move(above), std::move(below)),
+                     std::move(stay));
+}
+
 Typed Expressions::of(const ast::IsBetween& node, Span span) {
   Typed value = any(*node.value);
   if (value.type == Type::word) {
@@ -267,9 +283,7 @@ Typed Expressions::of(const ast::IsBetween& node, Span span) {
   if (!is_given()) lint_between(value, low, high, span, diagnostics_);
   if (reads_time(value.code) || reads_time(low.code) || reads_time(high.code))
     return time_between(std::move(value), std::move(low), std::move(high), span);
-  Expression above = compare(ast::Relation::greater_equal, std::move(value), std::move(low));
-  Expression below = compare(ast::Relation::less_equal, std::move(same), std::move(high));
-  return make_condition(make_binary(Operation::logical_and, std::move(above), std::move(below)),
+  return make_condition(between(std::move(value), std::move(same), std::move(low), std::move(high)),
                         span);
 }
 

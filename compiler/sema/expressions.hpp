@@ -154,6 +154,7 @@ private:
   Typed time_between(Typed value, Typed low, Typed high, Span span);
   Typed time_comparison(ast::Relation relation, Typed left, Typed right, Span span);
   Expression compare(ast::Relation relation, Typed left, Typed right);
+  Expression between(Typed value, Typed same, Typed low, Typed high);
   bool takes_margin(const Typed& left, const Typed& right);
 
   Names& names_;

@@ -46,7 +46,7 @@ public:
   void pop(Queue& queue);
   void clear(Queue& queue);
   void drop_waiting(Queue& queue);  // all except one that has begun
-  // Moves all of `from` to the end of `queue`; together they are at most policy::kMaxQueued.
+  // Moves all of `from` to the end of `queue`; together they are at most vm::kMaxQueued.
   void append(Queue& queue, Queue& from);
 
 private:

@@ -128,7 +128,7 @@ QueuedOrder* ControlLayer::place_of(Unit& unit, vm::Action action) {
     const CommandPool::Queue& behind = first ? unit.queue : unit.staged;
     if (pool_.renews(behind)) return &pool_.last(behind);
   }
-  if (unit.queue.count + unit.staged.count >= policy::kMaxQueued) return nullptr;
+  if (unit.queue.count + unit.staged.count >= vm::kMaxQueued) return nullptr;
   return pool_.push(unit.staged);
 }
 
@@ -353,7 +353,7 @@ bool ControlLayer::goes_elsewhere(const Unit& unit) const {
 
 // Begins commands until one needs time or none is left. Returns when to wake.
 kernel::Time ControlLayer::work_off(Unit& unit, const Stamp& stamp) {
-  for (unsigned i = 0; i <= policy::kMaxQueued && claim_next(unit); ++i) {
+  for (unsigned i = 0; i <= vm::kMaxQueued && claim_next(unit); ++i) {
     kernel::Time wake = 0;
     begin_next(unit, stamp, wake);
     if (unit.busy) return wake;

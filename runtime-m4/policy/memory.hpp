@@ -50,10 +50,6 @@ inline constexpr std::uint32_t kStackUnit = 64;  // of unprivileged stacks
 inline constexpr std::uint32_t kSafetyStack = 160;
 inline constexpr std::uint32_t kSafetyMachine = 64;
 
-inline constexpr std::uint32_t kMaxQueued = 8;  // commands that wait for one actuator
-// Commands that wait for all actuators: kCommands, and kCommandsEach more per actuator.
-inline constexpr std::uint32_t kCommands = 16;
-inline constexpr std::uint32_t kCommandsEach = 2;
 inline constexpr std::uint32_t kFeeds = 40;  // readings that wait for their time
 // Sets of rules that the triggers keep.
 inline constexpr unsigned kTriggerSets = 3;
@@ -214,8 +210,7 @@ inline void count(const vm::Image& image, Counts& counts) {
   count_behaviors(image, counts);
   counts[Count::reader_words] = counts[Count::inputs] * reader_words(counts[Count::rules]);
   counts[Count::actuators] = static_cast<std::uint32_t>(image.actuators.size());
-  counts[Count::commands] = std::min(kMaxQueued * counts[Count::actuators],
-                                     kCommands + kCommandsEach * counts[Count::actuators]);
+  counts[Count::commands] = vm::max_queued(counts[Count::actuators]);
 }
 
 // --- the parts ---

@@ -311,7 +311,9 @@ TEST_CASE("what is fed is stale when robot.json says so, also after five periods
     const std::string robot =
         R"({"sensors": [{"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": )" + channel +
         R"(}}], "actuators": [{"name": "arm", "type": "VIRTUAL", "device": "servo"}]})";
-    return view(compile_text(rule("touch LEVEL > 3", "MOVE arm SLOWLY"), robot)).channels[0].stale_ms;
+    return view(compile_text(rule("touch LEVEL > 3", "MOVE arm SLOWLY"), robot))
+        .channels[0]
+        .stale_ms;
   };
   CHECK(stale_ms(R"({"rate": "10Hz", "stale_after": "500ms"})") == 500);
   CHECK(stale_ms(R"({"rate": "10Hz", "stale_after": "501ms"})") == 501);

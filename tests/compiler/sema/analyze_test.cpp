@@ -61,6 +61,14 @@ TEST_CASE("MARGIN: enter at the number, leave later, for every comparison of its
   const Expression both = condition_of("room WARMTH > 60C AND touch LEVEL < 3 MARGIN 5C");
   CHECK(both.operands[0].operation == Operation::latch);
   CHECK(both.operands[1].operation == Operation::less);
+  const Expression between = condition_of("room WARMTH IS BETWEEN 20C AND 30C MARGIN 5C");
+  REQUIRE(between.operation == Operation::latch);
+  const auto limits = [](const Expression& two) {
+    CHECK(two.operation == Operation::logical_and);
+    return std::pair(two.operands[0].operands[1].constant, two.operands[1].operands[1].constant);
+  };
+  CHECK(limits(between.operands[0]) == std::pair(20'000, 30'000));
+  CHECK(limits(between.operands[1]) == std::pair(15'000, 35'000));
 }
 
 TEST_CASE("time words become operations with their durations") {
@@ -319,6 +327,43 @@ TEST_CASE("DEFINEs that grow without end are refused, not expanded") {
   const Result result = compile_text(program, common_robot());
   CHECK(result.image.empty());
   CHECK(messages(result).find("E0407") != std::string::npos);
+}
+
+TEST_CASE("a response may not give an actuator more commands than can wait for it") {
+  const auto times = [](unsigned count, const std::string& text) {
+    std::string all;
+    for (unsigned i = 0; i < count; ++i)
+      all += text;
+    return all;
+  };
+  const auto refused = [](const std::string& response) {
+    const Result result = compile_text(rule("touch LEVEL > 3", response), common_robot());
+    if (result.diagnostics.errors() == 0) return false;
+    INFO(messages(result));
+    CHECK(result.diagnostics.errors() == 1);
+    CHECK(messages(result).find("8 commands for `left_arm` are still waiting here") !=
+          std::string::npos);
+    return true;
+  };
+  const std::string move = "MOVE left_arm SLOWLY\n";
+  CHECK_FALSE(refused(times(8, move)));
+  CHECK(refused(times(9, move)));
+  CHECK(refused(times(4, move) + times(5, "MOVE arms SLOWLY\n")));
+  for (const char* const pause : {"THEN\n", "WAIT 1s\n", "STOP left_arm\n",
+                                  "FOLLOW left_arm TO (touch LEVEL * 1deg) FOR 1s\n"})
+    CHECK_FALSE(refused(times(8, move) + pause + times(8, move)));
+  CHECK_FALSE(refused("REPEAT 4 TIMES\n" + times(2, move) + "END\n"));
+  CHECK(refused("REPEAT 5 TIMES\n" + times(2, move) + "END\n"));
+  CHECK(refused(times(7, move) + "REPEAT 2 TIMES\n" + move + "THEN\n" + times(8, move) + "END\n"));
+  CHECK_FALSE(refused("REPEAT 100 TIMES\n" + times(8, move) + "THEN\nEND\n"));
+  const std::string either =
+      "IF touch LEVEL > 5\nDO\n" + times(5, move) + "ELSE\n" + times(5, move) + "END\n";
+  CHECK_FALSE(refused(either + times(3, move)));
+  CHECK(refused(either + times(4, move)));
+  const Result ending = compile_text(
+      "WHEN touch LEVEL > 3 DO\nMOVE right_arm SLOWLY\nELSE\n" + times(9, move) + "END\n",
+      common_robot());
+  CHECK(ending.diagnostics.errors() == 1);
 }
 
 TEST_CASE("actuators, groups, texts and DEFINEs stand for their parameters") {
