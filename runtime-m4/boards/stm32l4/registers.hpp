@@ -70,6 +70,9 @@ constexpr std::uint32_t page_of_bank_2(std::uint32_t page) {
 }
 inline constexpr std::uint32_t kStart = 1U << 16;
 inline constexpr std::uint32_t kLock = 1U << 31;
+// The fields above; OPTLOCK, next to kLock, reads as 1 all the time.
+inline constexpr std::uint32_t kOrder =
+    kProgram | kErasePage | page_of_bank_2(0xFF) | kStart | kLock;
 inline constexpr Register kDamage{0x4002'2018};
 inline constexpr std::uint32_t kInBank2 = 1U << 19;
 inline constexpr std::uint32_t kDamaged = 1U << 31;   // uncorrectable: NMI; write 1 to clear
