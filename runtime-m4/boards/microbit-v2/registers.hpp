@@ -273,8 +273,10 @@ struct Twim {
   constexpr Register frequency() const { return {base + 0x524}; }
   constexpr Register read_to() const { return {base + 0x534}; }
   constexpr Register read_count() const { return {base + 0x538}; }
+  constexpr Register bytes_read() const { return {base + 0x53C}; }
   constexpr Register write_from() const { return {base + 0x544}; }
   constexpr Register write_count() const { return {base + 0x548}; }
+  constexpr Register bytes_written() const { return {base + 0x54C}; }
   constexpr Register address() const { return {base + 0x588}; }
 
   static constexpr std::uint32_t kOn = 6;
