@@ -80,6 +80,7 @@ BUS_WRITE = re.compile(r"microbit_i2c_write: 0x([0-9a-f]+) <- 0x([0-9a-f]+)")
 TWIM0, BUS_INTERRUPT, CORE = 0x4000_3000, 3, "/machine/nrf51/armv6m"
 ENABLE, CLOCK_PIN, DATA_PIN, ADDRESS = (TWIM0 + at for at in (0x500, 0x508, 0x50C, 0x588))
 READ_TO, READ_COUNT, WRITE_FROM, WRITE_COUNT = (TWIM0 + at for at in (0x534, 0x538, 0x544, 0x548))
+BYTES_READ, BYTES_WRITTEN = TWIM0 + 0x53C, TWIM0 + 0x54C
 MOTION = {"sensors": [{"name": "motion", "device": "accelerometer", "channels": {"STRENGTH": {}}}], "actuators": []}
 SHAKEN = 'WHEN motion STRENGTH > 2g MARGIN 0.2g\nDO LOG "shaken"\nEND\n'
 WAKE = bytes((0xA0, 0x67, 0, 0, 0x90))
@@ -380,6 +381,13 @@ class OnMicrobit(DebuggedTest):
         """Runs one call of the driver; then the bus reports that its transfer is over."""
         debugger.run_to(read, lambda: None)
         debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
+        self.end_transfer(wires)
+
+    def end_transfer(self, wires):
+        """All bytes of the transfer have been moved."""
+        for wanted, moved in ((READ_COUNT, BYTES_READ), (WRITE_COUNT, BYTES_WRITTEN)):
+            if counts := self.told(wanted):
+                wires.write(moved, counts[-1].to_bytes(4, "little"))
         wires.interrupt(CORE, BUS_INTERRUPT)
 
     def test_the_accelerometer_is_woken_and_read_and_nobody_waits_for_it(self):
@@ -430,7 +438,7 @@ class OnMicrobit(DebuggedTest):
                 for place, count in sent[taken:]:
                     told.update(self.take(wires.read(place, count), memory))
                 taken = len(sent)
-                wires.interrupt(CORE, BUS_INTERRUPT)
+                self.end_transfer(wires)
                 debugger.step()
                 if len(memory) == PAGES * PAGE_COLUMNS and self.lights_of(memory) == wanted and (0xA6, 0xAF) in told:
                     break
@@ -474,7 +482,7 @@ class OnMicrobit(DebuggedTest):
                 before = self.told(WRITE_COUNT).count(1)
                 count = debugger.steps_to_return()
                 (asked if self.told(WRITE_COUNT).count(1) > before else taken).append(count)
-                wires.interrupt(CORE, BUS_INTERRUPT)
+                self.end_transfer(wires)
                 debugger.run_to(handler, lambda: None)
                 ends.append(debugger.steps_to_return())
         for what, said, measured in (("asking", declared["i2c_ask"], max(asked) + max(ends)),

@@ -1,5 +1,5 @@
-// See flash.hpp. Nordic's nRF52833 Product Specification, 4.3: a page is erased when its parts add up to 85 ms; a part takes up
-// to 9 % longer than specified; writing a word takes 43 us.
+// See flash.hpp. Nordic's nRF52833 Product Specification, 4.3: a part takes up to 9 % longer than specified; writing a word takes
+// 43 us. A page is erased when its parts add up to 87 ms (Nordic's nrfx; 85 ms are those of the nRF52840).
 #include "runtime-m4/boards/microbit-v2/flash.hpp"
 
 #include "runtime-m4/boards/microbit-v2/registers.hpp"

@@ -14,7 +14,7 @@ struct Flash {
   static constexpr std::size_t kUnit = 1;
   static constexpr bool kStalls = true;
 
-  // Erasing a page takes 85 ms, in parts of 2 ms. During a part nothing else runs, but bytes from the line are kept
+  // Erasing a page takes 87 ms, in parts of 2 ms. During a part nothing else runs, but bytes from the line are kept
   // (Uart::hold()).
   static Erasing erase(std::uint32_t page, unsigned call);
   static bool is_busy() { return false; }  // between two parts

@@ -28,11 +28,13 @@ void TwimMaster::start() const {
 void TwimMaster::begin(std::uint8_t address, std::span<const std::byte> out,
                        std::span<std::byte> in) {
   wrong_ = false;
+  to_write_ = static_cast<std::uint32_t>(out.size());
+  to_read_ = static_cast<std::uint32_t>(in.size());
   master_.address().write(address);
   master_.write_from().write(port::bus_address(out.data()));
-  master_.write_count().write(static_cast<std::uint32_t>(out.size()));
+  master_.write_count().write(to_write_);
   master_.read_to().write(port::bus_address(in.data()));
-  master_.read_count().write(static_cast<std::uint32_t>(in.size()));
+  master_.read_count().write(to_read_);
   master_.shortcuts().write(in.empty() ? Twim::kStopWhenWritten
                                        : Twim::kReadWhenWritten | Twim::kStopWhenRead);
   master_.start_writing().write(kDoIt);
@@ -47,7 +49,17 @@ Transfer TwimMaster::on_interrupt() {
   }
   if (master_.stopped().read() == 0) return Transfer::goes_on;
   forget(master_.stopped());
-  return wrong_ ? Transfer::failed : Transfer::done;
+  if (wrong_) return Transfer::failed;
+  if (is_whole()) return Transfer::done;
+  let_go();
+  return Transfer::failed;
+}
+
+// A stop that comes from the lines, a disturbance or a device that breaks the rules, ends a transfer without an error. Then the
+// master has to be switched off and on (Nordic's nrfx, xfer_completeness_check()).
+bool TwimMaster::is_whole() const {
+  return master_.bytes_written().read() == to_write_ &&
+         (to_read_ == 0 || master_.bytes_read().read() == to_read_);
 }
 
 // Switching the master off aborts any transfer and releases its pins.

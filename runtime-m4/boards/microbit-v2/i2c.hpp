@@ -30,9 +30,12 @@ public:
   static void half_bit();
 
 private:
+  bool is_whole() const;
+
   Twim master_;
   Lines lines_;
-  bool wrong_ = false;  // the running transfer has failed
+  std::uint32_t to_write_ = 0, to_read_ = 0;  // bytes of the running transfer
+  bool wrong_ = false;                        // it has failed
 };
 using I2c = AskedBus<TwimMaster>;
 

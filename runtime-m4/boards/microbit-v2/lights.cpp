@@ -56,7 +56,7 @@ void start() {
     column.set_high().write(column.mask());
   for (const auto* pins : {&kRows, &kColumns})
     for (const Pin& pin : *pins)
-      pin.configuration().write(Pin::kOutput);
+      pin.configuration().write(Pin::kStrongOutput);
   row_timer::kPrescaler.write(row_timer::kMicroseconds);
   row_timer::kValue.write(kRowTime);
   row_timer::kShortcuts.write(row_timer::kBeginAgain);

@@ -36,6 +36,8 @@ struct Spim {  // for PanelSignal
     const Pin* const chip = pins::chip_pin(pin);
     if (chip == nullptr) return;
     let_go();
+    panel_spi::kClock.configuration().write(Pin::kClockOutput);
+    panel_spi::kClockPin.write(panel_spi::kClock.number());
     panel_spi::kOutputPin.write(chip->number());
     panel_spi::kFrequency.write(panel_spi::k4MHz);
     panel_spi::kSendFrom.write(port::bus_address(bytes.data()));

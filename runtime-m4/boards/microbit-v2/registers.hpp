@@ -59,7 +59,9 @@ struct Pin {  // {0, 6} is P0.06
   constexpr Register levels() const { return {base() + 0x510}; }
   constexpr Register configuration() const { return {base() + 0x700 + std::uintptr_t{4} * bit}; }
 
-  static constexpr std::uint32_t kOutput = 0b11;  // input buffer disconnected
+  static constexpr std::uint32_t kOutput = 0b11;                    // input buffer disconnected
+  static constexpr std::uint32_t kStrongOutput = 3 << 8 | kOutput;  // H0H1: 10 mA instead of 2
+  static constexpr std::uint32_t kClockOutput = 0b01;  // a serial master hears its own clock
   static constexpr std::uint32_t kInputPulledUp = 0b1100;
   static constexpr std::uint32_t kAnalog = 0b10;  // nothing drives it, and no level is read
   // Pulled up, open drain: S0D1. TWIM wants its pins as inputs.
@@ -106,14 +108,17 @@ inline constexpr Register kSendFrom{kBase + 0x544};
 inline constexpr Register kSendCount{kBase + 0x548};
 }  // namespace player_uart
 
-namespace panel_spi {  // SPIM2, for a panel of lights; it has no clock pin, and receives nothing
+namespace panel_spi {  // SPIM2, for a panel of lights; it receives nothing
 inline constexpr std::uintptr_t kBase = 0x4002'3000;
+// Without a clock pin whose input buffer is connected, it sends nothing. The board connects P0.27 to nothing.
+inline constexpr Pin kClock{0, 27};
 inline constexpr Register kStart{kBase + 0x010};
 inline constexpr Register kStop{kBase + 0x014};
 inline constexpr Register kStopped{kBase + 0x104};  // event
 inline constexpr Register kEnded{kBase + 0x118};    // event: everything has left
 inline constexpr Register kEnable{kBase + 0x500};
 inline constexpr std::uint32_t kOn = 7;
+inline constexpr Register kClockPin{kBase + 0x508};
 inline constexpr Register kOutputPin{kBase + 0x50C};
 inline constexpr Register kFrequency{kBase + 0x524};
 inline constexpr std::uint32_t kHz = 4'000'000;
@@ -268,8 +273,10 @@ struct Twim {
   constexpr Register frequency() const { return {base + 0x524}; }
   constexpr Register read_to() const { return {base + 0x534}; }
   constexpr Register read_count() const { return {base + 0x538}; }
+  constexpr Register bytes_read() const { return {base + 0x53C}; }
   constexpr Register write_from() const { return {base + 0x544}; }
   constexpr Register write_count() const { return {base + 0x548}; }
+  constexpr Register bytes_written() const { return {base + 0x54C}; }
   constexpr Register address() const { return {base + 0x588}; }
 
   static constexpr std::uint32_t kOn = 6;

@@ -24,7 +24,7 @@ alignas(4) std::array<volatile std::uint16_t, Pwm::kChannels> values;
 
 void start() {
   kPin.set_low().write(kPin.mask());
-  kPin.configuration().write(Pin::kOutput);
+  kPin.configuration().write(Pin::kStrongOutput);
   for (volatile std::uint16_t& value : values)
     value = Pwm::kNever;
   values[kTop] = kSilent;

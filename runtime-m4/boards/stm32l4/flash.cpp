@@ -13,6 +13,10 @@ namespace {
 constexpr unsigned kMostCalls = 1000;
 constexpr unsigned kMostLooks = 100'000;  // more than 5 ms at 80 MHz
 
+bool is_ordered(std::uint32_t what) {
+  return (flash::kControl.read() & flash::kOrder) == what;
+}
+
 void begin(std::uint32_t what) {
   flash::kAccess.clear(flash::kDataCache);
   if (flash::kControl.has(flash::kLock)) {
@@ -41,16 +45,17 @@ Erasing Flash::erase(std::uint32_t page, unsigned call) {
   if (is_busy()) return Erasing::goes_on;
   const std::uint32_t which =
       flash::kErasePage | flash::page_of_bank_2((page - flash::kBank2) / kPage);
-  if (flash::kControl.read() ==
-      which) {  // this page, not an erase of another page that was given up
+  if (is_ordered(which)) {  // this page, not an erase of another page that was given up
     end();
     return Erasing::done;
   }
   begin(which);
-  flash::kControl.write(which | flash::kStart);
-  if ((flash::kControl.read() & ~flash::kStart) == which) return Erasing::goes_on;
-  end();  // the command has no effect: in an emulator, or if the flash is locked until the next reset
-  return Erasing::failed;
+  if (!is_ordered(which)) {  // in an emulator, or if the flash is locked until the next reset
+    end();
+    return Erasing::failed;
+  }
+  flash::kControl.write(which | flash::kStart);  // not read again before it is done: that may stall
+  return Erasing::goes_on;
 }
 
 // Waits while two words are written, in the thread of the lowest rank.

@@ -70,6 +70,9 @@ constexpr std::uint32_t page_of_bank_2(std::uint32_t page) {
 }
 inline constexpr std::uint32_t kStart = 1U << 16;
 inline constexpr std::uint32_t kLock = 1U << 31;
+// The fields above; OPTLOCK, next to kLock, reads as 1 all the time.
+inline constexpr std::uint32_t kOrder =
+    kProgram | kErasePage | page_of_bank_2(0xFF) | kStart | kLock;
 inline constexpr Register kDamage{0x4002'2018};
 inline constexpr std::uint32_t kInBank2 = 1U << 19;
 inline constexpr std::uint32_t kDamaged = 1U << 31;   // uncorrectable: NMI; write 1 to clear
@@ -140,7 +143,7 @@ inline constexpr Timer kTimer5{0x4000'0C00};
 namespace adc {                                 // ADC1, and registers it shares with ADC2
 inline constexpr Register kState{0x5004'0000};  // write 1 to clear
 inline constexpr std::uint32_t kReady = 1U << 0;
-inline constexpr std::uint32_t kEnded = 1U << 2;  // reading kData clears it, too
+inline constexpr std::uint32_t kEnded = 1U << 3;  // of the whole sequence
 inline constexpr Register kControl{0x5004'0008};  // in deep power-down after reset
 inline constexpr std::uint32_t kOn = 1U << 0;
 inline constexpr std::uint32_t kStart = 1U << 2;
@@ -157,8 +160,10 @@ inline constexpr Register samples(unsigned channel) {  // a field a channel
 }
 inline constexpr std::uint32_t k640Cycles = 0b111;
 inline constexpr Register kSequence{0x5004'0030};
-constexpr std::uint32_t only(unsigned channel) {
-  return channel << 6;
+// Two conversions, of which kData keeps the second. ES0250: the first one after a pause of more than a millisecond may be wrong,
+// so it is one of the internal channel 0, with the sampling time that it has after reset, the shortest.
+constexpr std::uint32_t discard_and_convert(unsigned channel) {
+  return channel << 12 | 0U << 6 | 1U;
 }
 inline constexpr Register kData{0x5004'0040};
 inline constexpr Register kCommon{0x5004'0308};

@@ -168,6 +168,23 @@ TEMPLATE_TEST_CASE("a bus: what is written goes out in its order, asked ahead or
   CHECK(bus.written.size() == 3);
 }
 
+TEST_CASE("micro:bit: a read that a stray stop ends early has failed, and the next one works") {
+  for (const unsigned bytes : {0U, 1U, 2U}) {
+    CAPTURE(bytes);
+    Bus<MicrobitBus> bus;
+    bus.stops_after = bytes;
+    bus.ask(0x10_b);
+    bus.run(500);
+    CHECK_FALSE(bus.bus.is_busy());
+    CHECK_FALSE(bus.collect(0x10_b));
+    bus.stops_after = ~0U;
+    bus.ask(0x30_b);
+    bus.run(500);
+    CHECK(bus.collect(0x30_b));
+    CHECK(bus.got_from(0x30));
+  }
+}
+
 TEMPLATE_TEST_CASE(
     "a bus: nobody there, or one who refuses a byte, is a transfer that failed, and no more", "",
     MicrobitBus, L475Bus<1>, L475Bus<2>) {

@@ -73,6 +73,10 @@ TEST_CASE("the lights: from the start on their pins are driven, and all are dark
   for (const auto& pins : {kRowPins, kColumnPins})
     for (const auto& pin : pins)
       CHECK(display.level(pin) != Nrf52833::Level::floating);
+  // A row feeds five lights. With the standard drive of 2 mA, a light gets darker with each other light of its row.
+  for (const auto& pins : {kRowPins, kColumnPins})
+    for (const auto& pin : pins)
+      CHECK(display.configuration_of(pin) >> 8 == 3);  // H0H1
   CHECK_FALSE(display.row_timer().runs);
   CHECK_FALSE(display.stray);
 }

@@ -41,6 +41,7 @@ TEMPLATE_TEST_CASE_SIG("the speaker gives the tone that it is told, evenly, and 
                        Nrf52833::Fetch::late) {
   Sounding chip(fetch);
   CHECK(chip.level(kSpeaker) == Nrf52833::Level::low);
+  CHECK(chip.configuration_of(kSpeaker) >> 8 == 3);  // H0H1, as CODAL drives it
   CHECK(chip.listen(50'000).high == 0);
   for (const unsigned hertz : {31U, 262U, 440U, 1000U, 1760U, 9999U}) {
     speaker::sound(hertz);

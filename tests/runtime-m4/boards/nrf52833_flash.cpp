@@ -9,7 +9,7 @@ namespace {
 constexpr std::uintptr_t kReady = 0x4001'E400, kConfiguration = 0x4001'E504,
                          kErasePartially = 0x4001'E518, kEraseMs = 0x4001'E51C;
 constexpr std::uintptr_t kReceived = 0x4000'2108, kReceive = 0x4000'2518;
-constexpr unsigned kEraseTakesMs = 85, kWordUs = 43, kByteUs = 87, kLookUs = 10;
+constexpr unsigned kEraseTakesMs = 87, kWordUs = 43, kByteUs = 87, kLookUs = 10;
 
 }  // namespace
 

@@ -51,9 +51,11 @@ void TwimBus::start(Phase phase) {
   expect_that(phase_ == Phase::idle || phase_ == Phase::writing, "it is in the midst of something");
   expect_that(frequency_ == 0x0620'0000, "the model knows one speed");
   expect_that(!holds_clock && holds_data == 0, "a start on a bus that somebody holds");
+  expect_that(!confused_, "its state is undefined after a stop that it did not send");
   phase_ = phase;
   done_ = 0;
   left_ = kByte;
+  (phase == Phase::writing ? has_written_ : has_read_) = 0;
   if (phase == Phase::writing) written.emplace_back();
 }
 
@@ -76,6 +78,7 @@ void TwimBus::write_byte() {
     const auto* const bytes = static_cast<const volatile std::byte*>(memory_at(write_from_));
     const std::byte byte = bytes[done_ - 1];
     written.back().push_back(byte);
+    ++has_written_;
     if (done_ == 1)
       place_ = std::to_integer<unsigned>(byte) & 0x7F;
     else
@@ -92,6 +95,11 @@ void TwimBus::read_byte() {
     auto* const bytes = const_cast<volatile std::byte*>(
         static_cast<const volatile std::byte*>(memory_at(read_to_)));
     bytes[done_ - 1] = registers[place_++];
+    ++has_read_;
+  }
+  if (has_read_ >= stops_after) {
+    confused_ = true;
+    return stop();
   }
   if (done_++ < read_count_) return;
   expect_that((shortcuts_ & 1U << 12) != 0, "nobody ends the reading");
@@ -130,6 +138,10 @@ std::uint32_t TwimBus::read(std::uintptr_t at) {
       return stopped_;
     case 0x124:
       return error_;
+    case 0x53C:
+      return has_read_;
+    case 0x54C:
+      return has_written_;
     default:
       throw std::runtime_error("the model has no register at " + std::to_string(at));
   }
@@ -164,7 +176,10 @@ void TwimBus::write_own(std::uintptr_t offset, std::uint32_t value) {
       return;
     case 0x500:  // off: aborts any transfer and releases its pins
       enabled_ = value == 6;
-      if (!enabled_) phase_ = Phase::idle;
+      if (!enabled_) {
+        phase_ = Phase::idle;
+        confused_ = false;
+      }
       return;
     default:
       return configure(offset, value);

@@ -24,6 +24,8 @@ public:
   std::vector<std::byte> registers =
       std::vector<std::byte>(256);  // the first byte written selects one, bit 7 is ignored
   unsigned refuses_after = ~0U;     // bytes of a message that are acknowledged
+  unsigned stops_after =
+      ~0U;  // bytes of a reading: then a stop is on the lines that the master did not send
   bool holds_clock = false;
   unsigned holds_data = 0;                      // clocks until it releases the data line
   unsigned clocks = 0;                          // clocks outside of transfers
@@ -54,11 +56,13 @@ private:
   std::uintptr_t base_;
   Pin clock_, data_;
   bool enabled_ = false, was_high_ = true;
+  bool confused_ = false;  // by a stop that it did not send: until it is switched off
   Phase phase_ = Phase::idle;
   unsigned left_ = 0, done_ = 0, place_ = 0;
   std::uint32_t stopped_ = 0, error_ = 0, errors_ = 0, shortcuts_ = 0, interrupts_ = 0;
   std::uint32_t of_ = 0, frequency_ = 0x0400'0000, clock_pin_ = ~0U, data_pin_ = ~0U;
   std::uint32_t read_to_ = 0, read_count_ = 0, write_from_ = 0, write_count_ = 0;
+  std::uint32_t has_read_ = 0, has_written_ = 0;
 };
 
 }  // namespace robosync::tests

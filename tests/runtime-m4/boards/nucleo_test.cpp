@@ -58,9 +58,12 @@ struct Nucleo : Stm32Timers {
   }
   std::uint32_t read(std::uintptr_t address) override {
     if (!is_other(address)) return Stm32Timers::read(address);
-    if (address == 0x5004'0000) return 0b101;                                   // ready, measured
+    if (address == 0x5004'0000) return 0b1001;                                  // ready, measured
     if (address == 0x5004'0008) return others[address] & ~(1U << 31 | 0b100U);  // calibrated
-    if (address == 0x5004'0040) return others[0x5004'0030] >> 6 & 31;
+    if (address == 0x5004'0040) {  // of the last conversion
+      const std::uint32_t sequence = others[0x5004'0030];
+      return sequence >> 6 * ((sequence & 0xF) + 1) & 31;
+    }
     return others[address];
   }
   void write(std::uintptr_t address, std::uint32_t value) override {

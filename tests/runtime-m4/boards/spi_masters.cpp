@@ -64,9 +64,10 @@ void NrfSpim::write(std::uintptr_t address, std::uint32_t value) {
       demand(is_dead || !runs_, "the module is switched while it sends");
       enable_ = value;
       return;
+    case 0x508:
     case 0x50C:
       demand(enable_ == 0, "its pin is chosen while the module is on");
-      output_ = value;
+      (address == kSpim2 + 0x508 ? clock_ : output_) = value;
       return;
     case 0x524:
       frequency_ = value;
@@ -93,6 +94,9 @@ void NrfSpim::start() {
   demand(configuration_of({output_ >> 5, output_ & 31}) == 0b11 &&
              !is_set({output_ >> 5, output_ & 31}),
          "its pin is no output, or high when the module lets it go");
+  // Nordic, PS nRF52832, SPI: "The SCK must always be connected to a pin, and that pin's input buffer must always be connected".
+  demand(clock_ < 64 && clock_ != output_ && configuration_of({clock_ >> 5, clock_ & 31}) == 0b01,
+         "the module has no clock pin, or does not hear it: it sends nothing");
   runs_ = true;
   stops_ = false;
   sent_ = 0;

@@ -49,8 +49,8 @@ private:
   void pass_byte();
   void start();
 
-  std::uint32_t enable_ = 0, output_ = ~0U, frequency_ = 0x0400'0000, memory_ = 0, count_ = 0,
-                receive_count_ = 0, ended_ = 0, stopped_ = 0;
+  std::uint32_t enable_ = 0, output_ = ~0U, clock_ = ~0U, frequency_ = 0x0400'0000, memory_ = 0,
+                count_ = 0, receive_count_ = 0, ended_ = 0, stopped_ = 0;
   std::size_t sent_ = 0;
   bool runs_ = false, stops_ = false;
 };

@@ -9,7 +9,7 @@ constexpr std::uintptr_t kAccess = 0x4002'2000, kKey = 0x4002'2008, kStatus = 0x
 constexpr std::uint32_t kDataCache = 1U << 10, kResetDataCache = 1U << 12;
 constexpr std::uint32_t kProgrammingError = 1U << 3, kSequenceError = 1U << 7, kBusy = 1U << 16;
 constexpr std::uint32_t kProgram = 1U << 0, kErase = 1U << 1, kBank2 = 1U << 11, kStart = 1U << 16,
-                        kLock = 1U << 31;
+                        kOptionLock = 1U << 30, kLock = 1U << 31;
 constexpr std::uint32_t kDamaged = 1U << 31, kDamageInBank2 = 1U << 19;
 constexpr unsigned kEraseUs = 24'470, kPairUs = 91;
 
@@ -21,7 +21,7 @@ void Stm32Flash::restart() {
   busy_us_ = 0;
   access_ = 0x704;
   status_ = 0;
-  control_ = kLock;
+  control_ = kLock | kOptionLock;
   damage_ = 0;
   keys_ = 0;
   low_.reset();
@@ -37,7 +37,8 @@ std::uint32_t Stm32Flash::read(std::uintptr_t address) {
       pass_us(1);
       return status_ | (is_busy() ? kBusy : 0);
     case kControl:
-      return is_busy() ? control_ : control_ & ~kStart;
+      demand(!is_busy(), "whether this read waits for the end of the operation is not specified");
+      return control_ & ~kStart;
     case kDamage:
       return damage_;
     default:
@@ -81,7 +82,7 @@ void Stm32Flash::write_access(std::uint32_t value) {
 void Stm32Flash::write_control(std::uint32_t value) {
   demand((control_ & kLock) == 0, "it is locked");
   demand(!is_busy(), "the flash is at work");
-  control_ = value;
+  control_ = value | (control_ & kOptionLock);  // software can only set it: RM0351, 3.7.6
   if ((value & kLock) != 0) keys_ = 0;
   if ((value & kStart) != 0) erase();
 }

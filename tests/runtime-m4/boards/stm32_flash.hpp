@@ -59,7 +59,7 @@ private:
   std::uint32_t read_word(std::uintptr_t address);
 
   std::vector<Pair> pairs_;
-  std::uint32_t access_ = 0x704, status_ = 0, control_ = 1U << 31, damage_ = 0;
+  std::uint32_t access_ = 0x704, status_ = 0, control_ = 0b11U << 30, damage_ = 0;
   unsigned keys_ = 0;
   std::optional<std::uint32_t> low_;  // the first word of a pair, waiting for the second
   std::uintptr_t low_at_ = 0;
