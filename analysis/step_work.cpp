@@ -2,6 +2,7 @@
 #include "analysis/step_work.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -21,6 +22,38 @@ using vm::RuleKind;
 // True for one step only.
 bool is_event(Opcode op) {
   return vm::info_of(op).effect == vm::Effect::event;
+}
+
+// A condition is true only in a step in which one of its event words is: as `mood IS calm AND button BECOMES pressed`. Conditions
+// have no jumps, so one pass tracks which cells are true only then.
+bool is_momentary(std::span<const vm::Word> condition) {
+  std::array<bool, vm::kMaxCells + 1> cells{};
+  for (const vm::Word word : condition) {
+    const Opcode op = vm::opcode_of(word);
+    bool& a = cells[vm::operand_a(word)];
+    const bool b = cells[vm::operand_b(word)];
+    const bool c = cells[vm::operand_c(word)];
+    switch (op) {
+      case Opcode::ret:
+        return a;
+      case Opcode::and_:
+        a = b || c;
+        break;
+      case Opcode::or_:
+        a = b && c;
+        break;
+      case Opcode::latch:
+        a = a && b;
+        break;
+      case Opcode::move:
+      case Opcode::held:
+        a = b;
+        break;
+      default:
+        a = is_event(op);
+    }
+  }
+  return false;
 }
 
 // There is an actuator that every side of both rules wants.
@@ -74,6 +107,8 @@ StepWork::StepWork(const vm::Image& image)
   worst_.resize(image.rules.size());
   held_ms_.resize(image.rules.size());
   events_.resize(image.rules.size());
+  becomes_.resize(image.rules.size());
+  momentary_.resize(image.rules.size());
   divides_.resize(image.rules.size());
   for (unsigned b = 0; b < image.behaviors.size(); ++b) {
     const vm::Behavior& behavior = image.behaviors[b];
@@ -99,10 +134,12 @@ void StepWork::load_rule(unsigned r, const vm::Behavior& behavior) {
     const Opcode op = vm::opcode_of(word);
     if (op == Opcode::lasted) note_held(r, lasts_ms(code.first(i), vm::operand_c(word)));
     if (is_event(op)) ++events_[r];
+    if (op == Opcode::rose) becomes_[r] = true;
     if (op == Opcode::held)
       note_held(r, static_cast<std::uint32_t>(image_.timers[vm::operand_c(word)].duration));
     if (vm::info_of(op).effect == vm::Effect::division) divides_[r] = true;
   }
+  momentary_[r] = is_momentary(code);
   worst_[r] = worst_of(work_of(image_, behavior, rule.then_response, ranges_),
                        work_of(image_, behavior, rule.else_response, ranges_));
   sets_[r] = worst_[r].sets;
@@ -243,14 +280,13 @@ vm::Word StepWork::last_word(unsigned r) const {
 }
 
 bool StepWork::fires_after_event(unsigned rule) const {
-  return !is_event(vm::opcode_of(last_word(rule)));
+  return !momentary_[rule];
 }
 
 bool StepWork::alternates(unsigned rule) const {
   const RuleKind kind = image_.rules[rule].kind;
   if (kind != RuleKind::when && kind != RuleKind::while_) return false;
-  const bool becomes = events_[rule] == 1 && vm::opcode_of(last_word(rule)) == Opcode::rose;
-  return events_[rule] == 0 || becomes;
+  return events_[rule] == 0 || (events_[rule] == 1 && becomes_[rule] && momentary_[rule]);
 }
 
 std::uint32_t StepWork::gap_ms(unsigned r) const {

@@ -65,7 +65,7 @@ public:
   }
   // … a word that is true for one step: the rule is evaluated again in the next millisecond.
   [[nodiscard]] bool has_events(unsigned rule) const { return events_[rule] != 0; }
-  // … and that word may make it fire: not if the condition is that word and nothing else.
+  // … and the rule may fire in that evaluation: not if its condition is true only while one of these words is.
   [[nodiscard]] bool fires_after_event(unsigned rule) const;
   // The shortest time between two evaluations that a FOR causes; 0: it has no FOR.
   [[nodiscard]] std::uint32_t held_ms(unsigned rule) const { return held_ms_[rule]; }
@@ -102,6 +102,8 @@ private:
   std::vector<bool> divides_;
   std::vector<std::uint32_t> held_ms_;
   std::vector<unsigned> events_;  // by rule: time words that are true for one step
+  std::vector<bool> becomes_;     // … one of them is a BECOMES
+  std::vector<bool> momentary_;   // … and the condition is true only when one of them is
   Inputs watched_;                // read by SAFETY rules
 };
 

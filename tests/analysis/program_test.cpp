@@ -7,6 +7,7 @@
 
 #include "analysis/bus_load.hpp"
 #include "analysis/report.hpp"
+#include "analysis/step_work.hpp"
 #include "analysis/task_set.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/board.hpp"
@@ -288,6 +289,34 @@ TEST_CASE("a rule that starves the board is refused by check, compile and upload
   for (const std::string& file : {image, robot.file}) {
     upload = test::rsc({"upload", file, "--port", robot.path("none"), "--anyway"});
     CHECK(upload.exit == 3);  // only the port is missing
+  }
+}
+
+TEST_CASE(
+    "a rule fires at a moment once, whatever else it asks for, unless it also fires without it") {
+  struct Case {
+    std::string condition;
+    bool alternates, fires_after;
+  };
+  const std::vector<Case> cases{
+      {"m BECOMES b", true, false},
+      {"n IS b AND m BECOMES b", true, false},
+      {"m BECOMES b AND n IS b AND touch LEVEL > 3", true, false},
+      {"(m BECOMES b AND touch LEVEL > 3) OR (n BECOMES b AND touch LEVEL < 1)", false, false},
+      {"n IS b OR m BECOMES b", false, true},
+      {"NOT (m BECOMES b)", false, true},
+      {"n IS b AND touch LEVEL CHANGES", false, false},
+  };
+  for (const Case& one : cases) {
+    CAPTURE(one.condition);
+    const tool::Program program = test::compile_with_docs_robot(
+        "STATE m: a, b\nSTATE n: a, b\nWHEN " + one.condition +
+        " DO\n  LOG \"now\"\nEND\nEVERY 1s DO\n  SET m TO b\n  SET n TO b\nEND\n");
+    const analysis::StepWork work(program.image());
+    const unsigned rule = program.image().rules[0].kind == vm::RuleKind::when ? 0 : 1;
+    REQUIRE(work.has_events(rule));
+    CHECK(work.alternates(rule) == one.alternates);
+    CHECK(work.fires_after_event(rule) == one.fires_after);
   }
 }
 
