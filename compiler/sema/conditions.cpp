@@ -102,12 +102,14 @@ void Expressions::report_word_comparison(const ast::Comparison& node, const Type
   }
 }
 
+bool Expressions::learns_words(const Typed& word) {
+  return word.code.operation == Operation::input && names_.channel(word.code.channel).learns_words;
+}
+
 // A channel that learns its words accepts a new one, except UNKNOWN, which does not mean a word.
 std::optional<std::size_t> Expressions::place_of(const ast::Name& label, const Typed& word,
                                                  bool quoted) {
-  const bool learns =
-      word.code.operation == Operation::input && names_.channel(word.code.channel).learns_words;
-  if (learns && !label.text.empty() && !same_name(label.text, "unknown") &&
+  if (learns_words(word) && !label.text.empty() && !same_name(label.text, "unknown") &&
       !names_.find_label(*word.labels, label.text)) {
     const std::size_t place = names_.learn_label(word.code.channel, label.text);
     if (place < kMaxLabels) return place;

@@ -1,5 +1,7 @@
 #include "compiler/sema/texts.hpp"
 
+#include <algorithm>
+
 #include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
@@ -35,26 +37,40 @@ bool TextBuilder::add(const ast::Argument& part) {
     if (binding != nullptr && binding->chosen) return report_second(part.span);
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
     value = expressions_.any(*amount->value);
-    if (value.type == Type::word) return report_word_shown(value);
-    value = expressions_.number_of(std::move(value));
   } else if (const auto* word = std::get_if<ast::Word>(&part.value)) {
     const Binding* binding = expressions_.find_binding(word->name.text);
     if (binding != nullptr && binding->chosen) return report_second(part.span);
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
-    value = expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
+    value = expressions_.operand({word->name, nullptr}, word->name.span);
   }
+  if (value.type == Type::word) return add_word(std::move(value));
+  value = expressions_.number_of(std::move(value));
   if (!value.is_number()) return false;
   add(std::move(value));
   return true;
 }
 
-// `LOG mood`
-bool TextBuilder::report_word_shown(const Typed& word) {
-  diagnostics_.report(Code::E0306, "`" + word.source + "` is a word, and a text shows only numbers")
-      .label(word.span)
-      .helps("write an IF with a text for each word: `IF " + word.source + " IS " +
-             word.labels->front() + "`");
-  return false;
+// The labels of a channel that learns its words are not complete yet.
+bool TextBuilder::add_word(Typed word) {
+  const std::string place = place_for(*word.labels);
+  if (place.empty() || expressions_.learns_words(word)) {
+    report_word_shown(word);
+    return false;
+  }
+  append(place);
+  values_.push_back(std::move(word.code));
+  return true;
+}
+
+void TextBuilder::report_word_shown(const Typed& word) {
+  Diagnostic& d =
+      diagnostics_.report(Code::E0306, "a text cannot show which word `" + word.source + "` is")
+          .label(word.span);
+  const auto shown = std::ranges::find_if(*word.labels, [](const std::string& label) {
+    return label.find_first_not_of(' ') != label.npos;
+  });
+  if (shown != word.labels->end())
+    d.helps("write an IF with a text for each word: `IF " + word.source + " IS " + *shown + "`");
 }
 
 // Statements has already replaced the first one.

@@ -1,5 +1,5 @@
 // Texts composed of parts: `"You have", points, "points"`, in logs and speech.
-// Each value gets a {} place in the text, with its unit; the code that shows the text fills it in.
+// Each value gets a {} place in the text, with its unit or its words; the code that shows the text fills it in.
 #pragma once
 
 #include <string>
@@ -27,7 +27,8 @@ public:
 private:
   void append(std::string_view part);
   bool report_second(Span span);
-  bool report_word_shown(const Typed& word);
+  bool add_word(Typed word);
+  void report_word_shown(const Typed& word);
 
   Expressions& expressions_;
   Diagnostics& diagnostics_;

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "compiler/source/ascii.hpp"
 
 namespace robosync::compiler {
@@ -33,6 +35,7 @@ constexpr auto kDifferenceUnits = [] {
   return units;
 }();
 constexpr char kDifferenceSign = '+';
+constexpr char kWordSign = '|';  // in front of each word
 
 struct OtherName {
   std::string_view name, spelling;
@@ -320,7 +323,9 @@ std::optional<ValuePlace> find_place(std::string_view text) {
        begin = text.find('{', begin + 1)) {
     const std::size_t end = text.find('}', begin);
     if (end == std::string_view::npos) break;
-    if (const Unit* const unit = unit_of_place(text.substr(begin + 1, end - begin - 1)))
+    const std::string_view what = text.substr(begin + 1, end - begin - 1);
+    if (what.starts_with(kWordSign)) return ValuePlace{begin, end + 1 - begin, nullptr, what};
+    if (const Unit* const unit = unit_of_place(what))
       return ValuePlace{begin, end + 1 - begin, unit};
   }
   return std::nullopt;
@@ -329,6 +334,26 @@ std::optional<ValuePlace> find_place(std::string_view text) {
 std::string place_for(const Unit& unit) {
   return (is_of_differences(unit) ? std::string("{") + kDifferenceSign : "{") +
          std::string(unit.spelling) + "}";
+}
+
+std::string place_for(std::span<const std::string> words) {
+  std::string place = "{";
+  for (const std::string& word : words) {
+    if (word.find_first_of("{|}") != std::string::npos) return {};
+    (place += kWordSign) += word;
+  }
+  return place += "}";
+}
+
+std::string shown_at(const ValuePlace& place, vm::Value value) {
+  if (value == vm::kUnknown) return "unknown";
+  if (place.unit != nullptr) return format_value(value, *place.unit);
+  std::string_view rest = place.words;
+  for (vm::Value left = value; left >= vm::kScale && !rest.empty(); left -= vm::kScale)
+    rest.remove_prefix(std::min(rest.find(kWordSign, 1), rest.size()));
+  if (rest.empty()) return fmt::format("word {}", value / vm::kScale);
+  rest.remove_prefix(1);
+  return std::string(rest.substr(0, rest.find(kWordSign)));
 }
 
 namespace {

@@ -58,13 +58,19 @@ struct Decimal {
 [[nodiscard]] std::string too_many_digits(std::string_view text);
 
 // A place for a value in a text that is output: "{cm}" for a number of centimetres, "{}" for a plain one, "{+F}" for a difference
-// of temperatures. The board sends the text and the values separately; the host combines them.
+// of temperatures, "{|calm|happy}" for a word, of which the value is the index. The board sends the text and the values
+// separately; the host combines them.
 struct ValuePlace {
   std::size_t begin = 0, size = 0;  // in the text
-  const Unit* unit = nullptr;       // never null
+  const Unit* unit = nullptr;       // null: it shows a word
+  std::string_view words{};         // "|calm|happy"
 };
 [[nodiscard]] std::optional<ValuePlace> find_place(std::string_view text);
 [[nodiscard]] std::string place_for(const Unit& unit);
+// Empty if one of the words has a character with a meaning in a place.
+[[nodiscard]] std::string place_for(std::span<const std::string> words);
+// What stands at the place of this value; "unknown" for kUnknown.
+[[nodiscard]] std::string shown_at(const ValuePlace& place, vm::Value value);
 
 // The fraction numerator / denominator, in lowest terms, = thousandths of the canonical unit for one count of a sensor. Offsets
 // of units (F) do not apply, because it is a difference.

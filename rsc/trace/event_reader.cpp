@@ -31,7 +31,7 @@ std::string filled_in(std::string_view text, std::span<const vm::Value> values) 
     const auto place = compiler::find_place(text);
     if (!place) break;
     result += text.substr(0, place->begin);
-    result += value == vm::kUnknown ? "unknown" : compiler::format_value(value, *place->unit);
+    result += compiler::shown_at(*place, value);
     text.remove_prefix(place->begin + place->size);
   }
   return result += text;

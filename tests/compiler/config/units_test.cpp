@@ -145,6 +145,24 @@ TEST_CASE("the place of a value in a text is a unit in curly brackets") {
   CHECK(place_for(difference_unit(*find_unit("cm"))) == "{cm}");
 }
 
+TEST_CASE("the place of a word in a text has all its words") {
+  const std::vector<std::string> words{"calm", "", "very happy"};
+  CHECK(place_for(words) == "{|calm||very happy}");
+  const auto place = find_place("I am {|calm||very happy} now");
+  REQUIRE(place);
+  CHECK(place->begin == 5);
+  CHECK(place->size == 19);
+  CHECK(place->unit == nullptr);
+  CHECK(shown_at(*place, 0) == "calm");
+  CHECK(shown_at(*place, 1000).empty());
+  CHECK(shown_at(*place, 2000) == "very happy");
+  CHECK(shown_at(*place, 3000) == "word 3");
+  CHECK(shown_at(*place, vm::kUnknown) == "unknown");
+  CHECK(shown_at(*find_place("{cm}"), 355'000) == "35.5cm");
+  for (const char* const wrong : {"a|b", "a{", "}"})
+    CHECK(place_for(std::vector<std::string>{"calm", wrong}).empty());
+}
+
 TEST_CASE("a difference of temperatures has no offset") {
   const Unit& more = difference_unit(*find_unit("F"));
   CHECK(is_of_differences(more));

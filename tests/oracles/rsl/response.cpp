@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include "compiler/ir/walk.hpp"
@@ -218,6 +219,16 @@ std::string shown(const Number& value, const std::string& unit) {
   return text + unit;
 }
 
+// `words`: "|calm|happy".
+std::string shown_word(const Number& value, const std::string& words) {
+  if (!value) return "unknown";
+  std::istringstream rest(words.substr(1));
+  std::string word;
+  for (auto left = *value / 1000; left >= 0; --left)
+    std::getline(rest, word, '|');
+  return word;
+}
+
 }  // namespace
 
 // A place is a unit in curly brackets.
@@ -228,7 +239,9 @@ std::string filled_in(const std::string& text, const std::vector<Number>& values
     const std::size_t begin = result.find('{', from);
     const std::size_t end = result.find('}', from);
     if (begin == std::string::npos || end == std::string::npos) break;
-    const std::string written = shown(value, result.substr(begin + 1, end - begin - 1));
+    const std::string what = result.substr(begin + 1, end - begin - 1);
+    const std::string written =
+        what.starts_with('|') ? shown_word(value, what) : shown(value, what);
     result.replace(begin, end + 1 - begin, written);
     from = begin + written.size();
   }
