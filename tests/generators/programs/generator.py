@@ -268,7 +268,7 @@ class Generator:
                          "RESTART idle", "RESTART busy", 'LOG "idle", idle', "SET last TO idle / 1s",
                          "PLAY sound NEXT songs", "SET count TO COUNT OF words - 2", "SET last TO ITEM count OF numbers",
                          "MOVE left_arm TO (ITEM last OF places)", "LOG ITEM (count + 1) OF numbers", "LOG ANY words",
-                         'LOG "count", count, "joy", joy',
+                         'LOG "count", count, mood, joy',
                          'ALERT "look here"', 'ALERT "joy", joy', "SET last TO touch LEVEL")
 
 
