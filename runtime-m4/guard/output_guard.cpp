@@ -465,12 +465,23 @@ void OutputGuard::begin_order(unsigned actuator) {
   if (is_free(actuator)) limp_ &= ~bit(actuator);
 }
 
-// All servos of a chip go limp, because it has one enable pin.
+// All servos of a chip go limp, because it has one enable pin; unless they hold.
 [[gnu::noinline]] void OutputGuard::halt_chips(Mask fresh) {
-  for (unsigned c = 0; c < chip_count_; ++c)
-    if ((chips_[c].actuators & fresh) != 0 && !chips_[c].holds) switch_chip_off(chips_[c]);
+  for (Chip& chip : std::span(chips_).first(chip_count_)) {
+    if ((chip.actuators & fresh) == 0) continue;
+    chip.holds ? hold(chip, chip.actuators & fresh) : switch_chip_off(chip);
+  }
   for (Display& display : std::span(displays_).first(display_count_))
     if ((fresh & bit(display.actuator)) != 0 && !display.holds) display.picture = 0;
+}
+
+// They keep the pulses that the chip gives. One without a pulse must not begin to move: it stays off until its next order.
+void OutputGuard::hold(const Chip& chip, Mask servos) {
+  each_of(servos, [&](unsigned actuator) {
+    Slot& slot = slots_[actuator];
+    slot.pulse = chip.on ? slot.target : std::uint16_t{0};
+    if (slot.pulse == 0) limp_ |= bit(actuator);
+  });
 }
 
 bool OutputGuard::knows_chip(unsigned sensor) const {
@@ -512,10 +523,13 @@ bool OutputGuard::next_setpoint(unsigned sensor, unsigned from, Setpoint& setpoi
   return false;
 }
 
+// A servo that was told to hold meanwhile holds there.
 void OutputGuard::note_setpoint(const Setpoint& setpoint) {
   const auto lock = kernel_.lock();
-  if (setpoint.actuator < slots_.size() && is_on_chip(setpoint.actuator))
-    slots_[setpoint.actuator].target = setpoint.pulse;
+  if (setpoint.actuator >= slots_.size() || !is_on_chip(setpoint.actuator)) return;
+  Slot& slot = slots_[setpoint.actuator];
+  slot.target = setpoint.pulse;
+  if (!is_free(setpoint.actuator) && slot.pulse != 0) slot.pulse = setpoint.pulse;
 }
 
 // A halt may have changed setpoints after the chip got them. Then the chip stays off until it has the new ones.

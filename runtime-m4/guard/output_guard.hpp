@@ -26,6 +26,7 @@
 // * It is off until the chip has been set up and has all its pulses. It goes off with a halt of one of its servos (unless their
 //   safe state is to hold), with the program, and when the state of the chip is no longer known.
 // * It does not go on while such a halt lasts. After it went off, each servo of the chip stays off until it gets another order.
+//   So does a servo that would hold, but gets no pulse from the chip yet when it is halted.
 //
 // A display shows a picture, which its server (drivers/screen.hpp) gets from the guard in the same way. It shows a halt in its
 // next frame, some 50 ms later, which harms nobody.
@@ -190,6 +191,7 @@ private:
   void switch_chip_off(Chip& chip);
   void switch_chips_off();
   void halt_chips(Mask fresh);
+  void hold(const Chip& chip, Mask servos);
   [[nodiscard]] bool is_on_chip(unsigned actuator) const;
   // The actuator that owns the lights, if any.
   Mask lights() const { return boards::kHasLights ? lights_ : 0; }
