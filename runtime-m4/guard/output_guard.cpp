@@ -137,11 +137,14 @@ void OutputGuard::ping(unsigned sensor) {
 // evaluated before their readings are known, so nothing would stop a motor meanwhile. A servo's pulses stay, because a servo
 // that gets the same pulse does not move. Meanwhile nothing drives any pin, not even to its safe state, because that would be
 // the safe state of another actuator.
-void OutputGuard::switch_off(const vm::Image* next) {
+//
+// A player is no longer owned, but lags, as long as it has not been told to be silent. Returns those that still must be.
+OutputGuard::Mask OutputGuard::switch_off(const vm::Image* next) {
   Mask owned = 0;
+  Mask sounding = 0;
   {
     const auto lock = kernel_.lock();
-    owned = std::exchange(owned_, 0);
+    owned = std::exchange(owned_, 0) | lagging_;
     free_ = lagging_ = 0;
   }
   take_back_all_but(next != nullptr ? measured_by(*next) : 0);
@@ -149,25 +152,33 @@ void OutputGuard::switch_off(const vm::Image* next) {
   if (speaker() != 0) board_.sound(0);
   switch_chips_off();
   for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
-    const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
+    Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     const bool moves = next != nullptr && next->has_safety() && vm::gives_power(slot.driver);
-    if (next == nullptr || !drives(*next, slot) || moves) switch_off(slot);
+    if ((next == nullptr || !drives(*next, slot) || moves) && !switch_off(slot))
+      sounding |= left & -left;
   }
   lights_ = speaker_ = on_chips_ = 0;
+  return sounding;
 }
 
-void OutputGuard::switch_off(const Slot& slot) {
-  if (is_on_panel(slot.driver))
-    board_.panel().show(0);
-  else if (vm::drives_player(slot.driver))
+// False: not yet.
+bool OutputGuard::switch_off(Slot& slot) {
+  if (vm::drives_player(slot.driver)) {
+    slot.target = 0;
+    const auto passed = static_cast<std::uint16_t>(kernel_.now() / 1000 - slot.changed);
+    if (passed < policy::kPlayerGapMs) return false;
     say(slot, 0);
-  else
+  } else if (is_on_panel(slot.driver)) {
+    board_.panel().show(0);
+  } else {
     board_.pwm_write(slot.pin, 0);
+  }
+  return true;
 }
 
 void OutputGuard::disown() {
   end_measurements();
-  switch_off(nullptr);
+  lagging_ = switch_off(nullptr);
 }
 
 void OutputGuard::begin_with(Mask halted) {
@@ -176,7 +187,8 @@ void OutputGuard::begin_with(Mask halted) {
 }
 
 void OutputGuard::own(const vm::Image& image) {
-  switch_off(&image);
+  const Mask sounding = switch_off(&image);
+  const Slot player = slots_[static_cast<unsigned>(std::countr_zero(sounding)) % slots_.size()];
   if (boards::kHasPanel) free_panel_pin(image);
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
@@ -203,6 +215,7 @@ void OutputGuard::own(const vm::Image& image) {
   own_displays(image);
   owned |= on_chips_;
   apart_ |= on_chips_;
+  if (sounding != 0) silence_later(player, owned);
   let_go_of(measured_by(image));
   {
     const auto lock = kernel_.lock();
@@ -620,6 +633,14 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
 
 void OutputGuard::say(const Slot& player, std::uint16_t sound) {
   board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
+}
+
+// The player of the program before takes a slot that no actuator needs until it is told. A board has one line (boards/pins.hpp).
+void OutputGuard::silence_later(const Slot& player, Mask owned) {
+  if (owned == ~Mask{0}) return say(player, 0);
+  const auto place = static_cast<unsigned>(std::countr_one(owned));
+  slots_[place] = player;
+  lagging_ |= bit(place);
 }
 
 // If the next program has another use for the panel's pin, the panel's picture goes too: something else is wired there.
