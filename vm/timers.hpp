@@ -36,9 +36,14 @@ constexpr bool reached(std::uint32_t time, std::uint32_t now) {
   return static_cast<std::int32_t>(now - time) >= 0;
 }
 
+// kNever is not a time: the millisecond after it is used instead, once in 49 days.
+constexpr std::uint32_t as_time(std::uint32_t time) {
+  return time == Machine::kNever ? 0 : time;
+}
+
 // Lowers machine.wake to `time`.
 inline void wake_at(Machine& machine, std::uint32_t time) {
-  const std::uint32_t told = time == Machine::kNever ? 0 : time;  // 1 ms late, once in 49 days
+  const std::uint32_t told = as_time(time);
   const bool sooner = told - machine.now < machine.wake - machine.now;
   if (machine.wake == Machine::kNever || sooner) machine.wake = told;
 }

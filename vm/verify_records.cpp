@@ -301,12 +301,15 @@ Refusal check_variable(Walk& walk, const Variable& variable, std::size_t) {
   const bool is_band = variable.kind == VariableKind::band;
   const bool has_labels = is_band || variable.kind == VariableKind::state;
   const auto in_range = [&](Value value) { return variable.min <= value && value <= variable.max; };
+  // Who carries a state over to the next program looks up its label (runtime-m4/layers/carried.cpp).
+  const bool is_label = variable.kind != VariableKind::state ||
+                        (variable.min >= 0 && variable.max / kScale < variable.label_count);
   const bool fades = variable.kind == VariableKind::feeling && variable.fade < kNoFade &&
                      in_range(variable.fades_to);
   return good_or(Refusal::bad_value,
                  is_enumerator(variable.kind) && is_dimension(variable.dimension) &&
                      has_labels == (variable.label_count > 0) && variable.reserved == 0 &&
-                     is_range(variable.min, variable.max) &&
+                     is_range(variable.min, variable.max) && is_label &&
                      (is_band ? variable.initial == kUnknown : in_range(variable.initial)) &&
                      (variable.fade == 0 || fades));
 }

@@ -30,6 +30,7 @@ constexpr bool meet(const auto& these, const auto& those) {
   return false;
 }
 static_assert(!meet(kInputs, kOutputs) && !meet(kInputs, kAnalog));
+static_assert(ROBOSYNC_SERIAL_LINES <= 1, "the output guard silences one player at a time");
 static_assert(!meet(kEnables, kOutputs) && !meet(kEnables, kInputs) && !meet(kEnables, kAnalog));
 static_assert(std::ranges::all_of(kAnalog, [](const auto& range) { return range.last < 64; }),
               "the output guard has a bit for each");

@@ -137,11 +137,14 @@ void OutputGuard::ping(unsigned sensor) {
 // evaluated before their readings are known, so nothing would stop a motor meanwhile. A servo's pulses stay, because a servo
 // that gets the same pulse does not move. Meanwhile nothing drives any pin, not even to its safe state, because that would be
 // the safe state of another actuator.
-void OutputGuard::switch_off(const vm::Image* next) {
+//
+// A player is no longer owned, but lags, as long as it has not been told to be silent. Returns those that still must be.
+OutputGuard::Mask OutputGuard::switch_off(const vm::Image* next) {
   Mask owned = 0;
+  Mask sounding = 0;
   {
     const auto lock = kernel_.lock();
-    owned = std::exchange(owned_, 0);
+    owned = std::exchange(owned_, 0) | lagging_;
     free_ = lagging_ = 0;
   }
   take_back_all_but(next != nullptr ? measured_by(*next) : 0);
@@ -149,25 +152,33 @@ void OutputGuard::switch_off(const vm::Image* next) {
   if (speaker() != 0) board_.sound(0);
   switch_chips_off();
   for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
-    const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
+    Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     const bool moves = next != nullptr && next->has_safety() && vm::gives_power(slot.driver);
-    if (next == nullptr || !drives(*next, slot) || moves) switch_off(slot);
+    if ((next == nullptr || !drives(*next, slot) || moves) && !switch_off(slot))
+      sounding |= left & -left;
   }
   lights_ = speaker_ = on_chips_ = 0;
+  return sounding;
 }
 
-void OutputGuard::switch_off(const Slot& slot) {
-  if (is_on_panel(slot.driver))
-    board_.panel().show(0);
-  else if (vm::drives_player(slot.driver))
+// False: not yet.
+bool OutputGuard::switch_off(Slot& slot) {
+  if (vm::drives_player(slot.driver)) {
+    slot.target = 0;
+    const auto passed = static_cast<std::uint16_t>(kernel_.now() / 1000 - slot.changed);
+    if (passed < policy::kPlayerGapMs) return false;
     say(slot, 0);
-  else
+  } else if (is_on_panel(slot.driver)) {
+    board_.panel().show(0);
+  } else {
     board_.pwm_write(slot.pin, 0);
+  }
+  return true;
 }
 
 void OutputGuard::disown() {
   end_measurements();
-  switch_off(nullptr);
+  lagging_ = switch_off(nullptr);
 }
 
 void OutputGuard::begin_with(Mask halted) {
@@ -176,7 +187,8 @@ void OutputGuard::begin_with(Mask halted) {
 }
 
 void OutputGuard::own(const vm::Image& image) {
-  switch_off(&image);
+  const Mask sounding = switch_off(&image);
+  const Slot player = slots_[static_cast<unsigned>(std::countr_zero(sounding)) % slots_.size()];
   if (boards::kHasPanel) free_panel_pin(image);
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
@@ -203,6 +215,7 @@ void OutputGuard::own(const vm::Image& image) {
   own_displays(image);
   owned |= on_chips_;
   apart_ |= on_chips_;
+  if (sounding != 0) silence_later(player, owned);
   let_go_of(measured_by(image));
   {
     const auto lock = kernel_.lock();
@@ -465,12 +478,23 @@ void OutputGuard::begin_order(unsigned actuator) {
   if (is_free(actuator)) limp_ &= ~bit(actuator);
 }
 
-// All servos of a chip go limp, because it has one enable pin.
+// All servos of a chip go limp, because it has one enable pin; unless they hold.
 [[gnu::noinline]] void OutputGuard::halt_chips(Mask fresh) {
-  for (unsigned c = 0; c < chip_count_; ++c)
-    if ((chips_[c].actuators & fresh) != 0 && !chips_[c].holds) switch_chip_off(chips_[c]);
+  for (Chip& chip : std::span(chips_).first(chip_count_)) {
+    if ((chip.actuators & fresh) == 0) continue;
+    chip.holds ? hold(chip, chip.actuators & fresh) : switch_chip_off(chip);
+  }
   for (Display& display : std::span(displays_).first(display_count_))
     if ((fresh & bit(display.actuator)) != 0 && !display.holds) display.picture = 0;
+}
+
+// They keep the pulses that the chip gives. One without a pulse must not begin to move: it stays off until its next order.
+void OutputGuard::hold(const Chip& chip, Mask servos) {
+  each_of(servos, [&](unsigned actuator) {
+    Slot& slot = slots_[actuator];
+    slot.pulse = chip.on ? slot.target : std::uint16_t{0};
+    if (slot.pulse == 0) limp_ |= bit(actuator);
+  });
 }
 
 bool OutputGuard::knows_chip(unsigned sensor) const {
@@ -512,10 +536,13 @@ bool OutputGuard::next_setpoint(unsigned sensor, unsigned from, Setpoint& setpoi
   return false;
 }
 
+// A servo that was told to hold meanwhile holds there.
 void OutputGuard::note_setpoint(const Setpoint& setpoint) {
   const auto lock = kernel_.lock();
-  if (setpoint.actuator < slots_.size() && is_on_chip(setpoint.actuator))
-    slots_[setpoint.actuator].target = setpoint.pulse;
+  if (setpoint.actuator >= slots_.size() || !is_on_chip(setpoint.actuator)) return;
+  Slot& slot = slots_[setpoint.actuator];
+  slot.target = setpoint.pulse;
+  if (!is_free(setpoint.actuator) && slot.pulse != 0) slot.pulse = setpoint.pulse;
 }
 
 // A halt may have changed setpoints after the chip got them. Then the chip stays off until it has the new ones.
@@ -606,6 +633,14 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
 
 void OutputGuard::say(const Slot& player, std::uint16_t sound) {
   board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
+}
+
+// The player of the program before takes a slot that no actuator needs until it is told. A board has one line (boards/pins.hpp).
+void OutputGuard::silence_later(const Slot& player, Mask owned) {
+  if (owned == ~Mask{0}) return say(player, 0);
+  const auto place = static_cast<unsigned>(std::countr_one(owned));
+  slots_[place] = player;
+  lagging_ |= bit(place);
 }
 
 // If the next program has another use for the panel's pin, the panel's picture goes too: something else is wired there.

@@ -26,13 +26,14 @@
 // * It is off until the chip has been set up and has all its pulses. It goes off with a halt of one of its servos (unless their
 //   safe state is to hold), with the program, and when the state of the chip is no longer known.
 // * It does not go on while such a halt lasts. After it went off, each servo of the chip stays off until it gets another order.
+//   So does a servo that would hold, but gets no pulse from the chip yet when it is halted.
 //
 // A display shows a picture, which its server (drivers/screen.hpp) gets from the guard in the same way. It shows a halt in its
 // next frame, some 50 ms later, which harms nobody.
 //
 // A sound player gets its order on its serial line at the next check of the safety monitor, and the order to be silent in a halt,
-// whatever its safe state. Commands are spaced by the time that the player needs (policy/player.hpp). Only the latest order
-// counts.
+// whatever its safe state. Commands are spaced by the time that the player needs (policy/player.hpp), also after its program has
+// ended. Only the latest order counts.
 //
 // A panel of lights gets its picture in the same way, and goes dark like the lights of a board. It keeps its pin; if a later
 // program has another use for the pin, the pin is taken from the panel first.
@@ -174,13 +175,14 @@ private:
   void tell(unsigned actuator, kernel::Time now);
   void say(const Slot& player, std::uint16_t sound);
   void free_panel_pin(const vm::Image& next);
-  void switch_off(const Slot& slot);
+  [[nodiscard]] bool switch_off(Slot& slot);
+  void silence_later(const Slot& player, Mask owned);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
   [[nodiscard]] Pins measured_by(const vm::Image& image) const;
   void take_back_all_but(Pins measured);
   void let_go_of(Pins measured);
-  void switch_off(const vm::Image* next);
+  [[nodiscard]] Mask switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   void own_chips(const vm::Image& image);
   void own_displays(const vm::Image& image);
@@ -190,6 +192,7 @@ private:
   void switch_chip_off(Chip& chip);
   void switch_chips_off();
   void halt_chips(Mask fresh);
+  void hold(const Chip& chip, Mask servos);
   [[nodiscard]] bool is_on_chip(unsigned actuator) const;
   // The actuator that owns the lights, if any.
   Mask lights() const { return boards::kHasLights ? lights_ : 0; }

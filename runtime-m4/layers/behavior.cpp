@@ -131,6 +131,12 @@ vm::Pause BehaviorLayer::checked_pause(const Result& result) const {
   return inside ? result.pause : vm::Pause::ended;
 }
 
+// Only a response that polls may have no time.
+std::uint32_t BehaviorLayer::wake_of(const Result& result, vm::Pause pause) const {
+  if (pause == vm::Pause::still_polling) return result.wake;
+  return as_time(pause == vm::Pause::until_done ? snapshot_->milliseconds() + 1 : result.wake);
+}
+
 // A response whose behaviour was stopped meanwhile has no effect.
 void BehaviorLayer::conclude(unsigned rule) {
   Result& result = *workspace_.result;
@@ -149,8 +155,7 @@ void BehaviorLayer::conclude(unsigned rule) {
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
   if (waited) point = {};
   if (pause == vm::Pause::ended) return;
-  const bool for_commands = pause == vm::Pause::until_done;
-  point = {.wake = for_commands ? snapshot_->milliseconds() + 1 : result.wake,
+  point = {.wake = wake_of(result, pause),
            .next = static_cast<std::uint16_t>(result.next - program_->image.code.data()),
            .pause = pause};
   if (moved) trace.emit(EventKind::wait, trace.step(), rule);

@@ -138,6 +138,7 @@ private:
   static void add_word(const vm::WordEntry& word, Command& command);
   void stage_writes(unsigned behavior);
   vm::Pause checked_pause(const Result& result) const;
+  std::uint32_t wake_of(const Result& result, vm::Pause pause) const;
   void release(unsigned behavior);
   void release_to_run(unsigned rule, unsigned code);
 

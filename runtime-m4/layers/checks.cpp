@@ -36,7 +36,7 @@ std::uint32_t Checks::next(std::uint32_t now) const {
   for (unsigned c = 0; c < wiring_.size(); ++c) {
     // Once the held value is the median, more samples of it change nothing.
     if (windows_[c].held == windows_[c].median) continue;
-    next.at(windows_[c].newest + policy::sample_period_ms(wiring_[c]) + 1);
+    next.surely_at(windows_[c].newest + policy::sample_period_ms(wiring_[c]) + 1);
   }
   return next.delay();
 }

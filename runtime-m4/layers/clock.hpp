@@ -15,6 +15,7 @@ inline constexpr std::uint32_t kNever = vm::Machine::kNever;
 // forget it before its difference becomes ambiguous.
 inline constexpr std::uint32_t kLongestRest = std::uint32_t{1} << 30;
 
+using vm::as_time;
 using vm::reached;
 
 // `time` comes before `other`; kNever comes after everything.
@@ -28,8 +29,12 @@ class Soonest {
 public:
   explicit Soonest(std::uint32_t now) : now_(now) {}
 
+  // kNever: there is no such time.
   void at(std::uint32_t time) {
-    if (time == kNever) return;
+    if (time != kNever) surely_at(time);
+  }
+  // … of a time that was computed, and may be equal to kNever.
+  void surely_at(std::uint32_t time) {
     delay_ = std::min(delay_, reached(time, now_) ? 0 : time - now_);
   }
   void in(std::uint32_t delay) { delay_ = std::min(delay_, delay); }

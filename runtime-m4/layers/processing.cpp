@@ -237,7 +237,7 @@ void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now
   const Decision decision = layers_.arbiter.decide(claim);
   if (decision.outcome == Outcome::ignored) return;
   if (decision.wins() || layers_.arbiter.works(rule))
-    due.at(layers_.behaviors.has_run(rule, now) ? now + 1 : now);
+    due.in(layers_.behaviors.has_run(rule, now) ? 1 : 0);
 }
 
 kernel::Time ProcessingLayer::next_time() {

@@ -12,11 +12,6 @@ namespace {
 
 using policy::milliseconds_of;
 
-// kNever is not a time: the millisecond after it is used instead, once in 49 days.
-std::uint32_t as_time(std::uint32_t time) {
-  return time == kNever ? 0 : time;
-}
-
 }  // namespace
 
 void Triggers::start(const vm::Image& image, Memory& memory) {
@@ -226,7 +221,7 @@ void Triggers::retire(unsigned rule) {
 std::uint32_t Triggers::cooled_at(unsigned rule) const {
   Side side = Side::then;
   const bool wants = chooses(rule) ? is_unsettled(rule, side) : goes_round(rule);
-  return wants && cools(rule, side) ? until(rule, side) : kNever;
+  return wants && cools(rule, side) ? as_time(until(rule, side)) : kNever;
 }
 
 }  // namespace robosync::layers

@@ -153,7 +153,7 @@ std::uint32_t Variables::next_fade(std::uint32_t now, std::span<const vm::Value>
     const auto v = static_cast<unsigned>(std::countr_zero(left));
     const std::uint32_t since = fades_[fading++].since;
     if (values[v] == image_->variables[v].fades_to) continue;
-    next.at(since + (ticks_since(since, entered_) + 1) * vm::kFadeTickMs);
+    next.surely_at(since + (ticks_since(since, entered_) + 1) * vm::kFadeTickMs);
   }
   return next.delay();
 }

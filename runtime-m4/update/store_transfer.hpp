@@ -47,6 +47,8 @@ public:
       case boards::Store::Outcome::done:
         unanswered_ = 0;
         done_ += std::min(boards::Store::kPiece, length() - done_);
+        // At once: until then a request could believe that the store does not have what it has.
+        if (done_ == length()) return end(true);
     }
     return Work::some;
   }

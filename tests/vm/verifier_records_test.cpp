@@ -362,6 +362,9 @@ TEST_CASE("variables") {
   refused(Refusal::bad_value, robot::mood, [](auto& v) { v.label_count = 0; });
   refused(Refusal::bad_index, robot::mood, [](auto& v) { v.label_count = 5; });
   refused(Refusal::bad_index, robot::nearness, [](auto& v) { v.first_label = 3; });
+  // A state never leaves its labels.
+  refused(Refusal::bad_value, robot::mood, [](auto& v) { v.min = -1; });
+  refused(Refusal::bad_value, robot::mood, [](auto& v) { v.max = v.label_count * kScale; });
   // Only feelings fade, never away from their range, and never without end.
   refused(Refusal::bad_value, robot::visitors, [](auto& v) { v.fade = 1; });
   refused(Refusal::bad_value, robot::joy, [](auto& v) { v.fade = 0x80000000; });

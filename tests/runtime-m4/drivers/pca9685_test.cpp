@@ -276,6 +276,89 @@ TEST_CASE("pca9685: what holds in its safe state holds, and takes no order") {
   CHECK_FALSE(robot.is_on());
 }
 
+// The chip does what a servo was told up to a frame later: that must not be in the halt.
+TEST_CASE("pca9685: a servo that would hold does not begin to move in a halt, nor after it") {
+  const std::string hold = R"(, "safe": "hold")";
+  const std::string arms = robot_of(servo("left", 3, hold) + "," + servo("right", 12, hold));
+  for (const bool is_on : {false, true})
+    for (unsigned wait = 0; wait < 25; ++wait) {
+      ChipRig robot;
+      robot.begin(kProgram, arms);
+      robot.run(100);
+      if (is_on) {
+        robot.order(21);  // the other servo of the chip
+        robot.run(1500);
+      }
+      robot.order(11);
+      robot.run(wait);
+      const double before = robot.pulse(3);
+      robot.rig.runtime.stop();
+      robot.run(100);
+      INFO(is_on << " " << wait);
+      CHECK(robot.pulse(3) == before);
+      if (before == 0) CHECK(robot.is_on() == is_on);
+      robot.rig.runtime.resume();
+      robot.run(100);
+      CHECK(robot.pulse(3) == before);
+      robot.order(31);
+      robot.run(1000);
+      CHECK(about(robot.pulse(3), 1000));
+    }
+}
+
+TEST_CASE("pca9685: a servo that holds stays where the chip has it, whatever is on the bus") {
+  test::NotingBoard board;
+  kernel::Kernel kernel;
+  guard::OutputGuard guard(kernel, board);
+  vm::Sensor chip{};
+  chip.driver = vm::DriverId::pca9685;
+  chip.first_input = kEnable;
+  vm::Actuator arm{};
+  arm.driver = vm::DriverId::pca9685_servo;
+  arm.pin = 3;
+  arm.safe = vm::Release::hold;
+  vm::Image image;
+  image.sensors = std::span(&chip, 1);
+  image.actuators = std::span(&arm, 1);
+  guard.own(image);
+  guard.note_chip_set_up(0);
+  guard::OutputGuard::Setpoint setpoint{};
+  const auto drive = [&](std::uint32_t pulse) {
+    guard.begin_order(0);
+    guard.drive(0, pulse, 0);
+    return guard.next_setpoint(0, 0, setpoint);
+  };
+  const auto is_to_go_off = [&] {
+    return guard.next_setpoint(0, 0, setpoint) && setpoint.pulse == 0;
+  };
+  REQUIRE(drive(1000));
+  guard.halt(1);
+  guard.note_setpoint(setpoint);  // it was on the bus
+  CHECK(is_to_go_off());
+  guard.note_setpoint(setpoint);
+  guard.let_go(1);
+  REQUIRE(drive(1000));
+  guard.note_setpoint(setpoint);
+  guard.halt(1);  // the chip has the pulse, and gives none yet
+  guard.let_chip_on(0);
+  CHECK_FALSE(board.enabled[kEnable]);
+  guard.let_go(1);
+  guard.drive(0, 1000, 0);  // no new order
+  CHECK(is_to_go_off());
+  static_cast<void>(drive(1000));
+  guard.let_chip_on(0);
+  REQUIRE(board.enabled[kEnable]);
+  REQUIRE(drive(1100));
+  guard.halt(1);
+  CHECK_FALSE(guard.next_setpoint(0, 0, setpoint));  // the chip has 1000
+  guard.let_go(1);
+  REQUIRE(drive(1200));
+  guard.halt(1);
+  guard.note_setpoint(setpoint);  // it was on the bus
+  CHECK_FALSE(guard.next_setpoint(0, 0, setpoint));
+  CHECK(board.enabled[kEnable]);
+}
+
 TEST_CASE("pca9685: without a program that has it, it is off") {
   ChipRig robot;
   robot.begin();

@@ -1,6 +1,8 @@
 // A sound player: its commands, their times, and silence whenever it may not sound. tests/e2e/test_sound.py checks the line.
 #include "runtime-m4/policy/player.hpp"
 
+#include <memory>
+
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/guard/output_guard.hpp"
@@ -137,6 +139,41 @@ TEST_CASE(
   CHECK(sounds_of(again.rig.board) == Told{0, 1});  // the second may replace the first
   again.rig.run(again.at + kGap + 2 * kLook);
   CHECK(sounds_of(again.rig.board) == Told{0, 1, 2});
+}
+
+// A player may miss a command that comes too soon, and would play its file to the end.
+TEST_CASE("player: silence has its time, too, when the program ends right after it began a sound") {
+  const std::string arm = "WHEN near X > 10\nDO\nMOVE arm TO 10deg\nEND\n";
+  const auto activate = [](Speaking& robot, const std::string& rsl) {
+    REQUIRE(robot.rig.activate(test::compile(rsl, kPlayerRobot)).ok());
+  };
+  const auto begun = [] {
+    auto robot = std::make_unique<Speaking>("PLAY sound \"one.wav\" FOR 60s");
+    CHECK(robot->told_after(2 * kLook) == Told{0, 1});
+    return robot;
+  };
+  const auto other = begun();
+  activate(*other, arm);
+  CHECK(other->told_after(kLook) == Told{0, 1});
+  other->rig.feed(0, 0);
+  other->rig.feed(0, 20);  // the arm moves: it does not own what must still be told
+  CHECK(other->told_after(kGap) == Told{0, 1, 0});
+  CHECK(other->told_after(1000) == Told{0, 1, 0});
+  CHECK(other->rig.board.pulse(0) != 0);
+  const auto none = begun();
+  none->rig.runtime.clear();
+  CHECK(none->told_after(kLook) == Told{0, 1});
+  CHECK(none->told_after(kGap + 60) == Told{0, 1, 0});  // without a program checks are rarer
+  const auto twice = begun();
+  twice->rig.runtime.clear();
+  activate(*twice, arm);
+  activate(*twice, arm);
+  CHECK(twice->told_after(kLook) == Told{0, 1});
+  CHECK(twice->told_after(kGap) == Told{0, 1, 0});
+  const auto again = begun();
+  again->rig.runtime.clear();
+  activate(*again, "AT START\nDO\nPLAY sound \"two.wav\" FOR 60s\nEND\n");
+  CHECK(again->told_after(1000) == Told{0, 1, 2});
 }
 
 TEST_CASE("player: the guard tells nothing for whom it has halted, nor for who has no line") {

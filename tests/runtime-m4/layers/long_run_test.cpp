@@ -106,6 +106,72 @@ TEST_CASE("a rule whose WAITING is over does not run weeks later") {
   CHECK(robot.rig.board.pulse(4) == 4'000);
 }
 
+// All goes on through the last millisecond that a program can count, which is also the mark for no time at all.
+namespace {
+
+// Up to `before` milliseconds in front of it; no step comes after that.
+void last_millisecond_comes(LongRun& robot, unsigned before) {
+  const auto left = [&] {
+    link::Status status{};
+    robot.rig.runtime.fill_status(status);
+    return UINT32_MAX - before - static_cast<std::uint32_t>(status.program_us / 1000);
+  };
+  while (left() > kADay)
+    days_pass(robot, 1);
+  robot.rig.kernel.on_tick(left() - 10);
+  robot.go_on(10);
+}
+
+std::size_t logged(const LongRun& robot) {
+  const std::string lines = robot.rig.only("log");
+  return static_cast<std::size_t>(std::ranges::count(lines, '\n'));
+}
+
+}  // namespace
+
+TEST_CASE("what is due in each millisecond is due in the last one, too") {
+  const auto* const body = GENERATE(as<const char*>(), "DO\n  WAIT 1ms\n  LOG \"on\"\nEND",
+                                    "DO LOG \"on\" END", "COOLDOWN 1ms\nDO LOG \"on\" END",
+                                    "DO\n  RUN motor TO 70%\n  THEN\n  LOG \"on\"\nEND",
+                                    "DO\n  WAIT UNTIL near X > 10\n  LOG \"on\"\nEND");
+  CAPTURE(body);
+  LongRun robot(std::string("WHILE near X > 50\n") + body + "\n");
+  last_millisecond_comes(robot, 2000);
+  robot.feeds(60);
+  robot.rig.lines.clear();
+  robot.go_on(1000);
+  const std::size_t before = logged(robot);
+  robot.go_on(1000);
+  robot.rig.lines.clear();
+  robot.go_on(1000);
+  CHECK(before > 400);
+  CHECK(logged(robot) == before);
+}
+
+TEST_CASE("a FEELING fades, and a median moves on, through the last millisecond") {
+  const unsigned later = GENERATE(range(0U, 100U));
+  CAPTURE(later);
+  LongRun fades(
+      "FEELING joy FROM 0 TO 100 START 0\n  FADES TO 0 OVER 20s\n"
+      "WHEN near X > 50\nDO SET joy TO 100\nEND\nWHEN joy < 60\nDO LOG \"calm\" END\n");
+  last_millisecond_comes(fades, 300);
+  fades.go_on(later);
+  fades.rig.lines.clear();
+  fades.rig.feed(0, 60);
+  fades.go_on(30'000);
+  CHECK(logged(fades) == 1);
+  if (later >= 25) return;
+  LongRun smooths(
+      "CHECK nearness OF near X\n  SMOOTH OVER 200ms\n  close ABOVE 50\n  far OTHERWISE\nEND\n"
+      "WHEN nearness IS close\nDO LOG \"close\" END\n");
+  smooths.go_on(later);  // its samples are whole periods after the first one
+  smooths.feeds(10);
+  last_millisecond_comes(smooths, 60);
+  smooths.rig.feed(0, 60);
+  smooths.go_on(1000);
+  CHECK(logged(smooths) == 1);
+}
+
 TEST_CASE("what SAFETY sets takes effect at once, however long the program before it ran") {
   const char* const program =
       "REMEMBER bad = 0\n"

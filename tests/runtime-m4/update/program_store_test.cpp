@@ -110,6 +110,23 @@ TEST_CASE("a cut of the power at every byte leaves the program of before, or the
   }
 }
 
+// A request may come between any two pieces: what it finds must be what the robot would find after a reset.
+TEST_CASE("between two pieces the store knows which program a reset would start") {
+  const Bytes first = some_image(1, 600), second = some_image(2, 777);
+  MemoryStore memory(kStoreBytes);
+  ProgramStore store = test::opened<ProgramStore>(memory);
+  keep(store, first);
+  store.write(second, named(second));
+  finish(store);
+  store.keep_written();
+  for (Work work = Work::some; work != Work::ended;) {
+    work = store.work();
+    MemoryStore after = memory;
+    REQUIRE(test::opened<ProgramStore>(after).kept() == store.kept());
+  }
+  CHECK(store.kept() == named(second));
+}
+
 TEST_CASE("a cut while programs change places leaves them as they were, or changed") {
   const Bytes first = some_image(1, 300), second = some_image(2, 500);
   MemoryStore before(kStoreBytes);
