@@ -116,6 +116,10 @@ void OutputGuard::let_go_of(Pins measured) {
   let_go_ |= measured;
 }
 
+void OutputGuard::listen(bool on) {
+  if (boards::kHasMicrophone) board_.listen(on);
+}
+
 // Their pins are unused afterwards.
 void OutputGuard::end_measurements() {
   const auto lock = kernel_.lock();
@@ -167,6 +171,7 @@ void OutputGuard::switch_off(const Slot& slot) {
 
 void OutputGuard::disown() {
   end_measurements();
+  listen(false);
   switch_off(nullptr);
 }
 
@@ -204,6 +209,8 @@ void OutputGuard::own(const vm::Image& image) {
   owned |= on_chips_;
   apart_ |= on_chips_;
   let_go_of(measured_by(image));
+  listen(std::ranges::any_of(
+      image.sensors, [](const vm::Sensor& sensor) { return vm::is_microphone(sensor.driver); }));
   {
     const auto lock = kernel_.lock();
     sensors_ = image.sensors;
