@@ -135,7 +135,7 @@ private:
       source.follows = sampled_input_of(sensor);
     } else if (!policy::is_fed(sensor))
       source.sample =
-          board_.wake_by_timer + sensor.channel_count * policy::sample_cost(sensor.driver, board_) +
+          board_.wake_by_timer + policy::sample_cost(sensor, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
     if (const Instructions asking = cost_of_asking(sensor); asking != 0) {
       const std::size_t asked = add_asking(sensor, s, asking, source.period);
@@ -148,6 +148,8 @@ private:
     }
     // The measurement for a sample began with the sample before.
     if (vm::measures_when_told(sensor.driver)) source.measuring = source.period;
+    // Its block of sound ended half a period before, or later, and is as long as a period.
+    if (vm::is_microphone(sensor.driver)) source.measuring = source.period + source.period / 2;
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s);
@@ -408,8 +410,9 @@ private:
     Instructions longest = 0;
     unsigned on_bus = 0;
     for (const vm::Sensor& sensor : image_.sensors) {
-      const Instructions transfer =
-          policy::is_fed(sensor) ? 0 : policy::sample_cost(sensor.driver, board_);
+      const Instructions transfer = policy::is_fed(sensor) || vm::is_microphone(sensor.driver)
+                                        ? 0  // it holds no bus
+                                        : policy::sample_cost(sensor.driver, board_);
       on_bus += transfer != 0 ? 1 : 0;
       longest = std::max(longest, transfer);
     }

@@ -87,8 +87,9 @@ constexpr bool drives_on(DriverId driver) {
 }
 
 // How a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, the sensor's
-// `bus` in the image, and how long its input is high after that. Adc: the voltage of an analog input.
-enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc };
+// `bus` in the image, and how long its input is high after that. Adc: the voltage of an analog input. Sound: the board's
+// microphone.
+enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc, sound };
 
 struct Sampling {
   Bus bus = Bus::nothing;
@@ -103,6 +104,7 @@ constexpr Sampling sampling_of(DriverId driver) {
   const auto pin = [] { return Sampling{Bus::pin}; };
   const auto echo = [] { return Sampling{Bus::echo}; };
   const auto adc = [] { return Sampling{Bus::adc}; };
+  const auto sound = [] { return Sampling{Bus::sound, true}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
@@ -146,13 +148,17 @@ constexpr bool is_by_echo(DriverId driver) {
 constexpr bool is_analog(DriverId driver) {
   return bus_of(driver) == Bus::adc;
 }
+// The microphone of the board, which has at most one.
+constexpr bool is_microphone(DriverId driver) {
+  return bus_of(driver) == Bus::sound;
+}
 // It takes a single measurement on request, which takes a while and may find nothing.
 constexpr bool measures_when_told(DriverId driver) {
   return driver == DriverId::vl53l0x;
 }
 // If its device does not answer, there is no new reading, and the last one grows old.
 constexpr bool may_be_silent(DriverId driver) {
-  return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver);
+  return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver) || is_microphone(driver);
 }
 
 // A chip that makes the pulses of servos. It has no readings: it is among the sensors so that its bus has one user at a time, and
@@ -182,12 +188,15 @@ inline constexpr std::uint16_t kAllChipsAddress = 0x70;
 
 // The echoes of one burst must have died away before the next one.
 inline constexpr std::uint16_t kMinEchoPeriodMs = 60;
+// A microphone is sampled as often as there is a new block of sound (runtime-m4/drivers/ear.hpp).
+inline constexpr std::uint16_t kSoundPeriodMs = 20;
 // A VL53L0X takes some 33 ms from one result to the next; this leaves a margin.
 inline constexpr std::uint16_t kMinRangingPeriodMs = 50;
 
 // The shortest period at which a sensor with this driver gives readings; 0: any.
 constexpr std::uint16_t min_period_ms(DriverId driver) {
   if (is_by_echo(driver)) return kMinEchoPeriodMs;
+  if (is_microphone(driver)) return kSoundPeriodMs;
   return measures_when_told(driver) ? kMinRangingPeriodMs : 0;
 }
 
@@ -202,6 +211,13 @@ constexpr bool is_panel(std::uint8_t lay, Value color) {
   for (unsigned part = 0; part < 24; part += 8)
     if ((static_cast<std::uint32_t>(color) >> part & 0xFF) > kMostLight) return false;
   return true;
+}
+
+// How many samples a program discards at its start: one that measures on request may hold a result of any age, and a microphone
+// is loud while its voltage settles.
+constexpr std::uint8_t first_samples_discarded(DriverId driver) {
+  if (is_microphone(driver)) return 6;
+  return measures_when_told(driver) ? 1 : 0;
 }
 
 // The I2C specification reserves all other addresses.

@@ -29,6 +29,7 @@ struct Walk {
   bool reads_pins = false;      // there is a sensor that uses pins
   std::uint32_t servo_chips = 0;
   std::uint32_t displays = 0;
+  std::uint32_t microphones = 0;
 };
 
 enum class DriverKind : std::uint8_t { sensor, actuator };
@@ -121,6 +122,15 @@ Refusal check_analog(Walk& walk, const Sensor& sensor, std::size_t index) {
   return good_or(Refusal::bad_value, sensor.period_ms > 0 && sensor.bus == 0);
 }
 
+// There is one, which needs no place, and it shares the converter with no analog sensor.
+Refusal check_microphone(Walk& walk, const Sensor& sensor) {
+  if (++walk.microphones > 1) return Refusal::too_many;
+  for (const Sensor& other : walk.image.sensors)
+    if (is_analog(other.driver)) return Refusal::bad_value;
+  return good_or(Refusal::bad_value,
+                 sensor.period_ms == kSoundPeriodMs && sensor.bus == 0 && sensor.address == 0);
+}
+
 bool answers_at(const Sensor& sensor, const Sensor& chip) {
   return is_on_i2c(sensor.driver) && sensor.bus == chip.bus && sensor.address == chip.address;
 }
@@ -167,6 +177,7 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
   if (is_by_echo(sensor.driver)) return check_echo(walk, sensor, index);
   if (is_analog(sensor.driver)) return check_analog(walk, sensor, index);
+  if (is_microphone(sensor.driver)) return check_microphone(walk, sensor);
   walk.reads_pins = walk.reads_pins || is_on_pin(sensor.driver);
   const bool place = is_on_pin(sensor.driver)
                          ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))

@@ -5,6 +5,7 @@
 
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -20,7 +21,8 @@ std::vector<std::string> device_names(const Board& board, bool is_sensor) {
   for (const DeviceText& device : device_texts())
     if (device.is_sensor == is_sensor) names.emplace_back(device.name);
   for (const Board::Part& part : board.parts)
-    if (is_kind(part, is_sensor)) names.push_back(part.name);
+    if (is_kind(part, is_sensor) && find_device(part.name, is_sensor) == nullptr)
+      names.push_back(part.name);
   return names;
 }
 
@@ -86,6 +88,10 @@ const WiringType* type_of(const Device& device) {
   return found == types.end() ? nullptr : &*found;
 }
 
+const WiringType* virtual_type() {
+  return &*std::ranges::find(wiring_types(), kVirtual, &WiringType::name);
+}
+
 std::string what_it_does(bool is_sensor) {
   return is_sensor ? "its readings come over the link" : "its commands are sent over the link";
 }
@@ -105,6 +111,11 @@ void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnos
       .label(name.span)
       .helps(device.is_sensor ? "specify it with \"device\", or with \"channels\" and their units"
                               : "specify it with \"device\"");
+}
+
+// A microphone cannot be wired. On a board that has none, it is fed.
+bool is_fed_here(const Device* device, const Board::Part* part) {
+  return device != nullptr && part == nullptr && vm::is_microphone(device->sensor.driver);
 }
 
 }  // namespace
@@ -134,6 +145,7 @@ const WiringType* choose_type(Fields& fields, const Board::Part* part, bool is_s
                              ? nullptr
                              : find_device(part != nullptr ? part->device : named->text, is_sensor);
   // choose_device() reports an unknown device.
+  if (fields.find("type") == nullptr && is_fed_here(device, part)) return virtual_type();
   if (fields.find("type") == nullptr && named != nullptr)
     return device != nullptr ? type_of(*device) : nullptr;
   if (named != nullptr && device == nullptr && find_device(named->text, !is_sensor) != nullptr)

@@ -228,17 +228,34 @@ void place_channels(SensorConfig& sensor) {
   }
 }
 
-void check_place(const Fields& fields, const SensorConfig& sensor, WiringReader& wiring,
-                 const Wiring& place) {
+void check_place(const Fields& fields, const SensorConfig& sensor, const Board::Part* part,
+                 WiringReader& wiring, const Wiring& place) {
   if (vm::is_on_i2c(sensor.driver)) wiring.check_bus(fields, place);
   if (vm::is_on_pin(sensor.driver)) wiring.check_input(fields, place);
   if (vm::is_by_echo(sensor.driver)) wiring.check_echo(fields, place);
   if (vm::is_analog(sensor.driver)) wiring.check_analog(fields, place);
+  if (vm::is_microphone(sensor.driver)) wiring.check_part(fields, part);
+  const bool hears = vm::is_microphone(sensor.driver) && part != nullptr;
+  if (vm::is_analog(sensor.driver) || hears) wiring.check_converter(fields, hears);
+}
+
+// Its channels are those of a block of sound.
+void check_sound_rate(const json::Value* channels, SensorConfig& sensor, Diagnostics& diagnostics) {
+  if (sensor.period_ms == vm::kSoundPeriodMs) return;
+  sensor.period_ms = vm::kSoundPeriodMs;
+  for (const json::Member& channel : channels->members)
+    for (const json::Member& key : channel.value.members)
+      if (key.key == "rate")
+        diagnostics
+            .report(Code::E0205, fmt::format("a microphone is read every {} ms", sensor.period_ms))
+            .label(key.value.span)
+            .helps("remove this rate");
 }
 
 // The descriptor's own rate is always possible.
-void check_rate(const json::Value* channels, const SensorConfig& sensor, Diagnostics& diagnostics) {
+void check_rate(const json::Value* channels, SensorConfig& sensor, Diagnostics& diagnostics) {
   const std::uint16_t shortest = vm::min_period_ms(sensor.driver);
+  if (vm::is_microphone(sensor.driver)) return check_sound_rate(channels, sensor, diagnostics);
   if (channels == nullptr || sensor.period_ms >= shortest) return;
   const bool by_echo = vm::is_by_echo(sensor.driver);
   for (const json::Member& channel : channels->members)
@@ -272,7 +289,8 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
     const Wiring place = wiring.read_sensor(fields, *type, part, device.sensor.driver);
     sensor.bus = place.bus;
     sensor.address = place.place;
-    if (type->name != "VIRTUAL" && device.has_driver) check_place(fields, sensor, wiring, place);
+    if (type->name != "VIRTUAL" && device.has_driver)
+      check_place(fields, sensor, part, wiring, place);
   }
   if (const auto* number = fields.find("register"))
     read_register(*number, device, sensor, diagnostics);

@@ -198,6 +198,23 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
       .helps("boards that have one: " + boards_with(device->text));
 }
 
+void WiringReader::check_converter(const Fields& fields, bool microphone) {
+  const auto* device = fields.find("device");
+  const Span span = (device != nullptr ? device : fields.find("type"))->span;
+  std::optional<Span>& mine = microphone ? microphone_ : analog_;
+  const std::optional<Span>& other = microphone ? analog_ : microphone_;
+  const bool is_first = !mine;
+  if (is_first) mine = span;
+  if (!is_first || !other) return;
+  diagnostics_
+      .report(Code::E0207,
+              "the microphone and the analog inputs use the same converter: a robot can have "
+              "either, not both")
+      .label(span)
+      .label(*other, microphone ? "an analog input" : "the microphone", false)
+      .helps("with `\"type\": \"VIRTUAL\"` one of them can be fed");
+}
+
 // ---- servos on a chip
 
 namespace {
@@ -377,6 +394,7 @@ Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const B
                                  vm::DriverId driver) {
   if (type.name != "VIRTUAL" && vm::is_by_echo(driver))
     return read_echo(fields, "the device `" + fields.find("device")->text + "`");
+  if (part == nullptr && vm::is_microphone(driver)) return {};  // check_part() reports it
   Wiring wiring = read(fields, type, part, false, "a sensor of type " + std::string(type.name));
   if (part == nullptr && type.name == "GPIO") wiring.bus = read_active(fields);
   if (type.name == "I2C") take_address(fields, wiring, part, vm::measures_when_told(driver));

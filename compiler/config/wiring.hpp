@@ -63,8 +63,10 @@ public:
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
   // For a panel of lights. A robot has at most one.
   void check_panel(const Fields& fields, const Wiring& wiring);
-  // For lights and speakers, which can only be parts of a board.
+  // For lights, speakers and microphones, which can only be parts of a board.
   void check_part(const Fields& fields, const Board::Part* part);
+  // A microphone and the analog inputs use the same converter, so a robot has either. Reported once.
+  void check_converter(const Fields& fields, bool microphone);
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:
@@ -105,6 +107,7 @@ private:
   std::map<std::uint16_t, Span> pins_;
   std::map<std::uint8_t, Span> lines_;
   std::optional<Span> panel_;
+  std::optional<Span> microphone_, analog_;                           // the first ones
   std::map<const Board::Part*, Span> parts_;                          // without a pin
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address
 };

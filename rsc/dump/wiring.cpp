@@ -62,6 +62,7 @@ std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
 
 std::string place_of(const vm::Sensor& sensor) {
   if (vm::is_analog(sensor.driver)) return fmt::format("analog pin {}", sensor.address);
+  if (vm::is_microphone(sensor.driver)) return "the board";
   if (vm::is_servo_chip(sensor.driver))
     return fmt::format("bus {} address 0x{:x}, enable pin {}", sensor.bus, sensor.address,
                        sensor.first_input);

@@ -222,6 +222,12 @@ private:
     return (std::filesystem::path(file_).parent_path() / name).string();
   }
 
+  // A sensor that is sampled measures its last value on and on, a microphone only as long as the recording.
+  void end_at(std::uint64_t at, std::uint8_t channel) {
+    if (!policy::is_fed(image_.sensors[image_.channels[channel].sensor]))
+      scenario_.stimuli.push_back({at, channel, vm::kUnknown});
+  }
+
   // The channels of a microphone that the program, or an algorithm that it uses, reads.
   void read_sound(json_t* stimulus) {
     const std::string_view sensor = need_string(stimulus, "sensor");
@@ -240,6 +246,7 @@ private:
       std::uint64_t at = begin;
       for (const drivers::Heard& heard : blocks)
         if (channel) add(at += drivers::kEarPeriodMs * std::uint64_t{1000}, *channel, heard.*part);
+      if (channel) end_at(at + drivers::kEarPeriodMs * std::uint64_t{1000}, *channel);
       is_read = is_read || channel;
     }
     if (!is_read) note(file_, line_of_key("sensor"), std::string(sensor));

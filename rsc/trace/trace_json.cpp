@@ -58,6 +58,7 @@ void add_device(Json& object, const EventReader& reader) {
     object["pin"] = sensor->address;
     return;
   }
+  if (vm::is_microphone(sensor->driver)) return;
   object["bus"] = sensor->bus;
   object["address"] = fmt::format("0x{:02x}", sensor->address);
 }

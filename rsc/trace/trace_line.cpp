@@ -125,6 +125,9 @@ std::string device_words(const EventReader& reader) {
     return fmt::format("{} on analog pin {} {} ({} times without a voltage so far)",
                        reader.sensor_name(), sensor->address,
                        silent ? "is not measured" : "is measured again", reader.value(0));
+  if (sensor != nullptr && vm::is_microphone(sensor->driver))
+    return fmt::format("{} {} ({} times without sound so far)", reader.sensor_name(),
+                       silent ? "hears nothing" : "hears again", reader.value(0));
   if (sensor != nullptr && vm::measures_when_told(sensor->driver))
     return text + fmt::format(" {} ({} times without a distance so far)",
                               silent ? "sees nothing" : "sees something again", reader.value(0));

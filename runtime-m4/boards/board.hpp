@@ -32,6 +32,10 @@ struct BusState {
   std::uint8_t held = 0;     // bit b: a line of bus b was held low at its last use
 };
 
+// A microphone's sound comes in blocks of 20 ms: 8,000 samples a second.
+inline constexpr std::size_t kSoundBlock = 160;
+using SoundBlock = std::span<std::int16_t, kSoundBlock>;
+
 inline constexpr std::size_t kMostSelected = 2;
 // The serial line to a sound player, on boards that have one.
 inline constexpr std::uint8_t kPlayerLine = vm::kFirstPlayerLine;
@@ -73,6 +77,12 @@ public:
   // The voltage of an analog input (pins()), 0 to kAnalogFull, which is the supply voltage. False when the converter does not
   // answer, or for any other pin. Takes tens of microseconds; at most twice as long when there is no answer.
   virtual bool analog(std::uint16_t /*pin*/, std::uint16_t& /*voltage*/) { return false; }
+  // The microphone, on boards that have one: on while a program uses it. Meanwhile analog() may give false. Only the output
+  // guard calls this.
+  virtual void listen(bool /*on*/) {}
+  // The last 20 ms of its sound, without its mean voltage; 32767 is the loudest. False if there are none, each counts once, or
+  // if samples were lost: then the next ones do not follow on the last. Called every 20 ms.
+  virtual bool hear(SoundBlock /*sound*/) { return false; }
   // For a pin that is both an output and an analog input: nothing drives it between let_go() and take_back(). Then it is an
   // output again, and low, as after start-up. No effect on other pins. Only the output guard calls these.
   virtual void let_go(std::uint16_t /*pin*/) {}

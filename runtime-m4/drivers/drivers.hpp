@@ -1,5 +1,6 @@
 // The drivers of this firmware, found by their number in the image: static dispatch over
-// vm/drivers.def, one .cpp file for each. No driver blocks, allocates, or keeps state of its own.
+// vm/drivers.def, one .cpp file for each. No driver blocks, allocates, or keeps state of its own
+// (microphone.hpp).
 #pragma once
 
 #include <array>
@@ -93,8 +94,9 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights and speakers is left out if the board has none; code for displays, players and panels if they cannot be connected.
+// Code for lights, speakers and microphones is left out if the board has none; code for displays, players and panels if they cannot be connected.
 constexpr bool is_present(vm::DriverId id) {
+  if (vm::is_microphone(id)) return boards::kHasMicrophone;
   if (vm::drives_lights(id)) return boards::kHasLights;
   if (vm::drives_screen(id)) return boards::kHasI2c;
   if (vm::drives_player(id)) return boards::kHasSerialLine;
@@ -102,14 +104,15 @@ constexpr bool is_present(vm::DriverId id) {
   return boards::kHasSpeaker || !vm::drives_speaker(id);
 }
 template <vm::DriverId id>
-constexpr Driver actuator_driver(Driver driver) {
+constexpr Driver driver_if_present(Driver driver) {
   return is_present(id) ? driver : Driver{};
 }
 
 inline constexpr Driver kDrivers[] = {
-#define SENSOR_DRIVER(name, ...) {name::read, nullptr, nullptr, nullptr},
+#define SENSOR_DRIVER(name, ...) \
+  driver_if_present<vm::DriverId::name>({name::read, nullptr, nullptr, nullptr}),
 #define ACTUATOR_DRIVER(name, ...) \
-  actuator_driver<vm::DriverId::name>({nullptr, name::start, name::advance, name::release}),
+  driver_if_present<vm::DriverId::name>({nullptr, name::start, name::advance, name::release}),
 #include "vm/drivers.def"
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace robosync::drivers {
 namespace {
@@ -98,22 +99,20 @@ private:
   std::int32_t latest_energy_, earlier_energy_;
 };
 
-// A lag at which a sound is more like itself than at the lags next to it.
-struct Peak {
-  std::int32_t lag = 0;  // in samples, times kPart
-  std::int32_t height = 0;
-};
 constexpr std::int32_t kPart = 256;
 
 // The peak of a parabola through three neighbours, of which the middle one is the highest.
+template <class Peak>
 Peak between(std::int32_t left, std::int32_t middle, std::int32_t right, std::size_t lag) {
   const std::int32_t bend = 2 * middle - left - right, slope = right - left;
   const std::int32_t offset = bend > 0 ? slope * (kPart / 2) / bend : 0;
   return {static_cast<std::int32_t>(lag) * kPart + offset, middle + slope * offset / (4 * kPart)};
 }
 
+}  // namespace
+
 // The peaks of a sound, shorter lags first.
-struct Peaks {
+struct Ear::Peaks {
   void find(Samples samples, std::size_t compared, std::size_t first_lag, std::size_t last_lag,
             std::int32_t samples_each) {
     Comparison comparison(samples, compared, first_lag);
@@ -121,7 +120,7 @@ struct Peaks {
     for (std::size_t lag = first_lag + 2; lag <= last_lag; ++lag) {
       const std::int32_t right = comparison.next();
       if (middle > left && middle >= right && count < all.size()) {
-        const Peak peak = between(left, middle, right, lag - 1);
+        const auto peak = between<Peak>(left, middle, right, lag - 1);
         highest = std::max(highest, peak.height);
         all[count++] = {peak.lag * samples_each, peak.height};
       }
@@ -130,14 +129,29 @@ struct Peaks {
     }
   }
 
-  std::array<Peak, 32> all;  // two adjacent lags are never both peaks
+  std::array<Peak, 32>& all;
   std::size_t count = 0;
   std::int32_t highest = 0;
 };
 
-}  // namespace
-
 Heard Ear::hear(std::span<const std::int16_t, kEarBlock> block) {
+  std::ranges::copy(block, next().begin());
+  return hear_next();
+}
+
+std::span<std::int16_t, kEarBlock> Ear::next() {
+  std::copy(past_.begin() + kEarBlock, past_.end(), past_.begin());
+  return std::span(past_).last<kEarBlock>();
+}
+
+void Ear::forget() {
+  past_.fill(0);
+  follows_ = false;
+}
+
+Heard Ear::hear_next() {
+  const std::span<const std::int16_t, kEarBlock> block = std::span(past_).last<kEarBlock>();
+  if (!std::exchange(follows_, true)) last_ = block[0];
   std::uint64_t squares = 0, differences = 0;
   for (const std::int16_t sample : block) {
     const std::int64_t difference = std::int64_t{sample} - last_;
@@ -145,7 +159,6 @@ Heard Ear::hear(std::span<const std::int16_t, kEarBlock> block) {
     differences += static_cast<std::uint64_t>(difference * difference);
     last_ = sample;
   }
-  remember(block);
   Heard heard;
   heard.loudness = decibel(squares / kEarBlock);
   heard.highs = decibel(differences / kEarBlock);
@@ -153,24 +166,19 @@ Heard Ear::hear(std::span<const std::int16_t, kEarBlock> block) {
   return heard;
 }
 
-void Ear::remember(std::span<const std::int16_t, kEarBlock> block) {
-  std::copy(past_.begin() + kEarBlock, past_.end(), past_.begin());
-  std::ranges::copy(block, past_.begin() + kEarBlock);
-}
-
 // What repeats after some lag also repeats after twice that lag, so the first of the highest peaks is taken.
-void Ear::find_pitch(Heard& heard) const {
-  std::array<std::int16_t, kPast> past = past_;
-  soften(past);
-  Peaks peaks;
-  peaks.find(past, kCompared, kShortest - 1, kMiddle + 2, 1);
-  std::array<std::int16_t, kPast / 2> halved;
+void Ear::find_pitch(Heard& heard) {
+  work_ = past_;
+  soften(work_);
+  Peaks peaks{peaks_};
+  peaks.find(work_, kCompared, kShortest - 1, kMiddle + 2, 1);
+  const std::span<std::int16_t> halved = std::span(work_).first<kPast / 2>();
   for (std::size_t i = 0; i < halved.size(); ++i)
-    halved[i] = static_cast<std::int16_t>((past[2 * i] + past[2 * i + 1]) / 2);
+    halved[i] = static_cast<std::int16_t>((work_[2 * i] + work_[2 * i + 1]) / 2);
   peaks.find(halved, kComparedHalved, kMiddle / 2, kLongest + 1, 2);
   const std::int32_t enough = peaks.highest * kEnough / 100;
   if (enough <= 0) return;
-  const Peak first = *std::find_if(peaks.all.begin(), peaks.all.end(),
+  const Peak first = *std::find_if(peaks_.begin(), peaks_.end(),
                                    [&](const Peak& peak) { return peak.height >= enough; });
   const vm::Value tenths = std::int32_t{kEarRate} * 10 * kPart / first.lag;
   heard.pitch = std::min(tenths, kHighest) * (vm::kScale / 10);

@@ -1,6 +1,6 @@
 // What a microphone's driver makes of sound: four numbers for each 20 ms. The sound itself goes no further: a block of it is
 // larger than all the memory of an algorithm's module, and three times what the link carries. Integers only, so the result is
-// the same everywhere. No board has a microphone yet; rsc uses this on recordings.
+// the same everywhere: rsc hears recordings with it.
 //
 // Pitch is found by autocorrelation: the lag after which the sound repeats. Low pitches are searched in means of two
 // samples, which is a quarter of the work; high ones in all samples. For a single tone the result is accurate to 1 %.
@@ -31,14 +31,29 @@ public:
   // Each in whole units, the pitch in tenths.
   [[nodiscard]] Heard hear(std::span<const std::int16_t, kEarBlock> block);
 
+  // The same in two parts, for a block that is written where it is heard: it is to be filled, or forgotten.
+  [[nodiscard]] std::span<std::int16_t, kEarBlock> next();
+  [[nodiscard]] Heard hear_next();
+  // Samples were lost: the next block follows on silence.
+  void forget();
+
 private:
   // Two blocks: a deep voice repeats after 12 ms, and must do so twice.
   static constexpr std::size_t kPast = 2 * kEarBlock;
-  void remember(std::span<const std::int16_t, kEarBlock> block);
-  void find_pitch(Heard& heard) const;
+  // A lag at which a sound is more like itself than at the lags next to it.
+  struct Peak {
+    std::int32_t lag = 0;  // in samples, times kPart
+    std::int32_t height = 0;
+  };
+  struct Peaks;
+  void find_pitch(Heard& heard);
 
   std::array<std::int16_t, kPast> past_{};
   std::int16_t last_ = 0;
+  bool follows_ = true;  // the next block on the last one
+  // Larger than a sensor's stack.
+  std::array<std::int16_t, kPast> work_;
+  std::array<Peak, 32> peaks_;  // two adjacent lags are never both peaks
 };
 
 }  // namespace robosync::drivers

@@ -116,6 +116,10 @@ void OutputGuard::let_go_of(Pins measured) {
   let_go_ |= measured;
 }
 
+void OutputGuard::listen(bool on) {
+  if (boards::kHasMicrophone) board_.listen(on);
+}
+
 // Their pins are unused afterwards.
 void OutputGuard::end_measurements() {
   const auto lock = kernel_.lock();
@@ -178,6 +182,7 @@ bool OutputGuard::switch_off(Slot& slot) {
 
 void OutputGuard::disown() {
   end_measurements();
+  listen(false);
   lagging_ = switch_off(nullptr);
 }
 
@@ -217,6 +222,8 @@ void OutputGuard::own(const vm::Image& image) {
   apart_ |= on_chips_;
   if (sounding != 0) silence_later(player, owned);
   let_go_of(measured_by(image));
+  listen(std::ranges::any_of(
+      image.sensors, [](const vm::Sensor& sensor) { return vm::is_microphone(sensor.driver); }));
   {
     const auto lock = kernel_.lock();
     sensors_ = image.sensors;

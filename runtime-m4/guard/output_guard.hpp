@@ -182,6 +182,7 @@ private:
   [[nodiscard]] Pins measured_by(const vm::Image& image) const;
   void take_back_all_but(Pins measured);
   void let_go_of(Pins measured);
+  void listen(bool on);
   [[nodiscard]] Mask switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   void own_chips(const vm::Image& image);

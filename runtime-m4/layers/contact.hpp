@@ -4,8 +4,7 @@
 // The first round decides alone. From then on it takes kRounds contradicting rounds in a row to change the standing,
 // so that a device that answers now and then is not reported in every round.
 //
-// A device that measures on request may hold a result from before the program, of any age. That result is discarded, so
-// the first round does not count.
+// The first rounds of some devices are discarded (vm::first_samples_discarded()), so they do not count.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +18,16 @@ public:
 
   enum class News : std::uint8_t { none, silent, answers };
 
-  void expect_old_result() { standing_ = Standing::has_old_result; }
-  bool has_old_result() const { return standing_ == Standing::has_old_result; }
+  void discard(std::uint8_t rounds) {
+    otherwise_ = rounds;
+    standing_ = rounds != 0 ? Standing::discards : Standing::not_asked;
+  }
+  bool discards() const { return standing_ == Standing::discards; }
 
   // A round is over, with this many failed transfers.  [sensor's thread]
   News note(unsigned failed) {
-    if (has_old_result()) {
-      standing_ = Standing::not_asked;
+    if (discards()) {
+      if (--otherwise_ == 0) standing_ = Standing::not_asked;
       return News::none;
     }
     failed_ = static_cast<std::uint16_t>(std::min(failed_ + failed, unsigned{UINT16_MAX}));
@@ -48,10 +50,10 @@ public:
   std::uint16_t failed() const { return failed_; }
 
 private:
-  enum class Standing : std::uint8_t { not_asked, has_old_result, answers, silent };
+  enum class Standing : std::uint8_t { not_asked, discards, answers, silent };
 
   std::uint16_t failed_ = 0;
-  std::uint8_t otherwise_ = 0;  // rounds in a row
+  std::uint8_t otherwise_ = 0;  // rounds in a row, or rounds still to be discarded
   Standing standing_ = Standing::not_asked;
 };
 

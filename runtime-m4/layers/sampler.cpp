@@ -24,6 +24,8 @@ vm::Value scaled(std::int32_t raw, const vm::Channel& channel) {
 bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) {
   const vm::Channel& wiring = image.channels[channel];
   const vm::Sensor& sensor = image.sensors[wiring.sensor];
+  if (boards::kHasMicrophone && vm::is_microphone(sensor.driver))
+    return microphone_.sample(board_, channel == sensor.first_channel, wiring, value);
   std::int32_t raw = 0;
   {
     const kernel::MutexGuard mine(kernel_, buses_);

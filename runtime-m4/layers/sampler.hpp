@@ -1,7 +1,11 @@
 // What the sensor layer measures with: drivers on the board, fed values in the simulator.
 #pragma once
 
+#include <type_traits>
+
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/features.hpp"
+#include "runtime-m4/drivers/microphone.hpp"
 #include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "vm/image.hpp"
@@ -52,6 +56,11 @@ private:
   boards::Board& board_;
   guard::OutputGuard& outputs_;
   kernel::Mutex buses_{kernel::Category::sensor};
+  struct None {
+    static bool sample(boards::Board&, bool, const vm::Channel&, vm::Value&) { return false; }
+  };
+  [[no_unique_address]] std::conditional_t<boards::kHasMicrophone, drivers::Microphone, None>
+      microphone_;
 };
 
 // raw * scale_num / scale_den + offset, rounded half away from zero, saturating.

@@ -39,8 +39,8 @@ bool SensorLayer::start_sensor(unsigned sensor, ProgramThreads& threads) {
   unit = {.layer = this, .thread = nullptr, .contact = {}};
   // For a sensor that SAFETY reads, a board waits until it has measured; a simulation begins with that done.
   const bool has_measured = simulated_ && (awaited_ & made_of(sensor)) != 0;
-  if (vm::measures_when_told(program_->image.sensors[sensor].driver) && !has_measured)
-    unit.contact.expect_old_result();
+  if (!has_measured)
+    unit.contact.discard(vm::first_samples_discarded(program_->image.sensors[sensor].driver));
   const auto entry = [](void* self) {
     const auto& mine = *static_cast<Unit*>(self);
     mine.layer->run_sensor(static_cast<unsigned>(&mine - mine.layer->units_.data()));
@@ -116,8 +116,7 @@ void SensorLayer::run_sensor(unsigned sensor) {
 // SAFETY at the last moment has its whole period, too.
 kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
-  const bool measures =
-      vm::measures_when_told(wiring.driver) && !units_[sensor].contact.has_old_result();
+  const bool measures = vm::measures_when_told(wiring.driver) && !units_[sensor].contact.discards();
   const bool at_once = asks_ahead(sensor) <= kernel::kTick && !measures;
   return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
 }
@@ -184,7 +183,7 @@ void SensorLayer::sample(unsigned sensor) {
     const auto channel = static_cast<std::uint8_t>(c);
     vm::Value value = 0;
     if (sampler_->sample(program_->image, channel, value)) {
-      if (!units_[sensor].contact.has_old_result()) news |= publish(channel, value, kernel_.now());
+      if (!units_[sensor].contact.discards()) news |= publish(channel, value, kernel_.now());
     } else {
       ++failed;
     }

@@ -45,7 +45,7 @@ struct ActuatorCosts {
   bool at_once;  // a command may end as soon as it has begun
 };
 
-// The cost of one sample of one channel; 0 for an actuator's driver.
+// The cost of one sample of one channel, of all channels of a microphone; 0 for an actuator's driver.
 constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board) {
   const auto fed = [] { return std::uint32_t{0}; };
   const auto computed = [] { return std::uint32_t{0}; };
@@ -56,6 +56,7 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
   const auto pin = [&] { return std::uint32_t{board.input}; };
   const auto echo = [&] { return std::uint32_t{board.echo}; };
   const auto adc = [&] { return std::uint32_t{board.analog}; };
+  const auto sound = [&] { return std::uint32_t{board.sound}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case vm::DriverId::name:               \
@@ -70,6 +71,12 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
       break;
   }
   return 0;
+}
+
+// … and of all its channels.
+constexpr std::uint32_t sample_cost(const vm::Sensor& sensor, const BoardCosts& board) {
+  const bool once = vm::is_microphone(sensor.driver);
+  return sample_cost(sensor.driver, board) * (once ? 1U : sensor.channel_count);
 }
 
 // The cost of requesting the transfers of one sample ahead.

@@ -91,6 +91,7 @@ constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
       return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
     case vm::Bus::adc:
       return is_analog(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+    case vm::Bus::sound:  // without one, the board has no driver for it
     case vm::Bus::nothing:
       break;
   }

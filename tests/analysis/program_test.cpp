@@ -421,6 +421,27 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "sound is heard once for all channels, and its block began one and a half periods before") {
+  const auto path_of = [](const std::string& channels) {
+    const tool::Program program = test::as_program(compiler::compile(
+        {"robot.rsl", "WHEN ear LOUDNESS > 60dB" + channels + " DO RUN lamp TO 10% END\n"},
+        {"robot.json", R"({"board": "microbit-v2",
+        "sensors": [{"name": "ear", "device": "microphone"}],
+        "actuators": [{"name": "lamp", "type": "PWM", "pin": 1, "device": "pwm"}]})"}));
+    const analysis::ResponseReport report = analysis::response_report(
+        program.image(), costs_of_board("microbit-v2"), tool::module_cost);
+    REQUIRE(report.paths.size() == 1);
+    return report.paths.front();
+  };
+  const policy::BoardCosts& board = costs_of_board("microbit-v2");
+  const analysis::PathTiming one = path_of(""), two = path_of(" OR ear PITCH > 100Hz");
+  CHECK(one.measuring == 30ULL * board.instructions_per_ms());
+  CHECK(one.base.time > one.measuring + board.sound);
+  CHECK(two.base.time < one.base.time + board.sound);
+  CHECK(two.base.time > one.base.time);
+}
+
 TEST_CASE("what is told to measure began with the sample before: that is where its path begins") {
   for (const std::string_view name : {"mps2-an386", "b-l475e-iot01a"}) {
     CAPTURE(name);

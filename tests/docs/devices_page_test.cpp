@@ -70,9 +70,10 @@ vm::DriverId driver_of(const Device& device) {
   return device.is_sensor ? device.sensor.driver : device.actuator.driver;
 }
 
-// Lights and speakers are nothing that could be wired.
+// Lights, speakers and microphones are nothing that could be wired.
 bool is_only_a_part(const Device& device) {
-  return vm::drives_lights(driver_of(device)) || vm::drives_speaker(driver_of(device));
+  return vm::drives_lights(driver_of(device)) || vm::drives_speaker(driver_of(device)) ||
+         vm::is_microphone(driver_of(device));
 }
 
 // Does the firmware of `board` read or drive it?
@@ -103,6 +104,7 @@ std::string boards_of(const Device& device) {
     names.push_back(code(board.name) +
                     (parts.empty() ? "" : " (on the board: " + joined(parts) + ")"));
   }
+  if (vm::is_microphone(driver_of(device))) return joined(names) + "; on the others it is fed";
   if (!names.empty()) return joined(names);
   return device.has_driver
              ? "none yet: its commands take their time, but nothing is sent to a device"

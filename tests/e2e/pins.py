@@ -51,6 +51,9 @@ class Pins:
     def word(self, address):
         return int(self._say(f"readl {address:#x}").split()[1], 16)
 
+    def set_word(self, address, value):
+        self._say(f"writel {address:#x} {value:#x}")
+
     def write(self, address, data):
         self._say(f"write {address:#x} {len(data):#x} 0x{data.hex()}")
 

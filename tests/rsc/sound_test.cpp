@@ -86,6 +86,42 @@ TEST_CASE("a robot hears a clap and a voice in a recording, whatever its rate an
   }
 }
 
+TEST_CASE(
+    "a microphone on the board hears a recording as a fed one does, but for its first 120 ms") {
+  const std::string sound = wav(8000, 1, 4, room);
+  const auto heard = [&](const std::string& type, const std::string& at) {
+    const Folder folder;
+    folder.write("room.wav", sound);
+    const std::string program = robot(folder);
+    folder.write("robot.json", R"({"board": "microbit-v2",
+      "sensors": [{"name": "microphone", )" +
+                                   type + R"("device": "microphone"}],
+      "actuators": [{"name": "voice", "type": "VIRTUAL", "device": "speaker"}],
+      "algorithms": [{"name": "ear", "module": "sound_events", "input": "microphone"}]})");
+    folder.write("play.json", R"({"duration": "5s", "stimuli": [
+      {"sound": "room.wav", "sensor": "microphone", "at": ")" +
+                                  at + R"("}]})");
+    const Outcome ran = rsc({"run", program, "--scenario", folder.path("play.json"), "--all"});
+    INFO(ran.out << ran.err);
+    CHECK(ran.exit == 0);
+    return ran.out;
+  };
+  const std::string is_virtual = R"("type": "VIRTUAL", )";
+  const std::string real = heard("", "500ms");
+  CHECK_THAT(real, Contains("SAY clap") && Contains("SAY speech"));
+  CHECK_THAT(real, Contains("4.701 s  microphone LOUDNESS is unknown"));
+  // Afterwards the algorithm goes on with what was fed last, until that is stale.
+  const auto while_it_lasts = [](const std::string& out) {
+    return out.substr(0, std::min(out.find("   4.6"), out.find("   4.7")));
+  };
+  CHECK(while_it_lasts(real).size() > 10'000);
+  CHECK(while_it_lasts(real) == while_it_lasts(heard(is_virtual, "500ms")));
+  CHECK_THAT(heard(is_virtual, "0s"), Contains("0.020 s  microphone LOUDNESS"));
+  const std::string early = heard("", "0s");
+  CHECK_THAT(early, Contains("0.120 s  microphone LOUDNESS"));
+  CHECK_THAT(early, !Contains("0.100 s  microphone"));
+}
+
 TEST_CASE("the singing teacher nods to whoever sings its note, and comes for a whistle") {
   // From 4 s on a voice, a G and then an A; at 9 s a whistle that rises by an octave in half a second.
   const auto singing = [](double at) {

@@ -321,6 +321,23 @@ TEST_CASE("a sensor whose voltage is not measured is told of with its pin") {
   CHECK_FALSE((told.contains("address") || told.contains("bus")));
 }
 
+TEST_CASE("a microphone that hears nothing is told of without a place") {
+  const compiler::Result result = compiler::compile(
+      {"robot.rsl", "WHEN ear LOUDNESS > 60dB DO LOG \"loud\" END\n"},
+      {"robot.json",
+       R"({"board": "microbit-v2", "sensors": [{"name": "ear", "device": "microphone"}]})"});
+  REQUIRE_FALSE(result.image.empty());
+  const tool::Program ear{result.image, "robot.rsl", tool::board_memory(), {}};
+  const auto line = [&](EventKind kind) {
+    return tool::trace_line(event(kind, 0, 0, {3}), {&ear.image(), {}});
+  };
+  CHECK(line(EventKind::silent) == "   1.020 s  ear hears nothing (3 times without sound so far)");
+  CHECK_THAT(line(EventKind::answers), Catch::Contains("ear hears again (3 times"));
+  const json told =
+      json::parse(tool::trace_json(event(EventKind::silent, 0, 0, {3}), {&ear.image(), {}}));
+  CHECK_FALSE((told.contains("address") || told.contains("bus")));
+}
+
 TEST_CASE("a device on a bus is told of with where it is; without an image by its number") {
   const Event silent = event(EventKind::silent, 1, 0, {3});
   CHECK(as_json(silent) ==

@@ -77,6 +77,8 @@ public:
     voltage = found.value_or(0);
     return found.has_value();
   }
+  void listen(bool on) override { listened.push_back(on); }
+  bool hear(boards::SoundBlock sound) override { return sound_of && sound_of(sound); }
   void let_go(std::uint16_t pin) override { handed.emplace_back(pin, true); }
   void take_back(std::uint16_t pin) override { handed.emplace_back(pin, false); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
@@ -128,6 +130,8 @@ public:
   std::function<std::uint32_t(std::uint16_t echo)> echo_us;
   unsigned takes = 0;
   std::function<std::optional<std::uint16_t>(std::uint16_t pin)> voltage_of;
+  std::function<bool(boards::SoundBlock)> sound_of;
+  std::vector<bool> listened;                          // all
   std::vector<std::pair<std::uint16_t, bool>> handed;  // true: let_go(), false: take_back(); all
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
   std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in order

@@ -75,6 +75,43 @@ TEST_CASE("sensors") {
     by_light(image.sensors[0], kMinRangingPeriodMs);
     check_accepted(image);
   }
+  // A microphone has the board's rate, no place, and no second one or analog input beside it.
+  const auto by_ear = [](Sensor& sensor) {
+    sensor.driver = DriverId::microphone;
+    sensor.bus = 0;
+    sensor.address = 0;
+    sensor.period_ms = kSoundPeriodMs;
+  };
+  {
+    ImageBuilder image = robot::make();
+    by_ear(image.sensors[0]);
+    check_accepted(image);
+  }
+  for (const int period : {0, kSoundPeriodMs - 1, kSoundPeriodMs + 1})
+    refused(Refusal::bad_value, 0, [&](auto& s) {
+      by_ear(s[0]);
+      s[0].period_ms = static_cast<std::uint16_t>(period);
+    });
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    by_ear(s[0]);
+    s[0].bus = 1;
+  });
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    by_ear(s[0]);
+    s[0].address = 1;
+  });
+  refused(Refusal::too_many, 1, [&](auto& s) {
+    by_ear(s[0]);
+    by_ear(s[1]);
+  });
+  for (const std::size_t ear : {0, 1})
+    refused(Refusal::bad_value, static_cast<std::uint16_t>(ear), [&](auto& s) {
+      by_ear(s[ear]);
+      s[1 - ear].driver = DriverId::analog_input;
+      s[1 - ear].bus = 0;
+      s[1 - ear].address = 44;
+      s[1 - ear].period_ms = 20;
+    });
   for (const auto& [trigger, echo] : {std::pair{20, 41}, {21, 40}, {40, 21}, {21, 20}})
     refused(Refusal::shared_pin, 1, [&, trigger = trigger, echo = echo](auto& s) {
       by_echo(s[0], 20, 40);

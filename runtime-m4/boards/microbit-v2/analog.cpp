@@ -8,6 +8,7 @@
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/common/inputs.hpp"
+#include "runtime-m4/boards/microbit-v2/microphone.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
 
 namespace robosync::boards::microbit::analog {
@@ -43,13 +44,18 @@ void stop() {
 
 }  // namespace
 
+void configure() {
+  saadc::kResolution.write(saadc::k12Bits);
+  saadc::kOversampling.write(saadc::kNone);
+  saadc::kResultsTo.write(port::bus_address(&result));
+  saadc::kResultCount.write(1);
+}
+
 // If the calibration does not end, read() does not get an answer later, either.
 void start() {
   saadc::kInput.write(saadc::kNoInput);
   saadc::kConfiguration.write(saadc::kPartOfSupply);
-  saadc::kResolution.write(saadc::k12Bits);
-  saadc::kResultsTo.write(port::bus_address(&result));
-  saadc::kResultCount.write(1);
+  configure();
   saadc::kEnable.write(saadc::kOn);
   unsigned looks = kLooksAtCalibration;
   forget(saadc::kCalibrated);
@@ -61,7 +67,7 @@ void start() {
 // Stops the converter and disconnects the pin at the end, which saves current.
 bool read(std::uint16_t pin, std::uint16_t& voltage) {
   const std::size_t i = find_input(kInputs, pin);
-  if (i == kInputs.size()) return false;
+  if (i == kInputs.size() || microphone::is_on()) return false;
   unsigned looks = kLooks;
   saadc::kInput.write(kInputs[i].selected);
   forget(saadc::kStarted);

@@ -9,8 +9,10 @@ namespace robosync::boards::microbit::analog {
 
 // The crystal must be running.
 void start();
-// 4095 (boards::kAnalogFull) is the supply voltage. False when the converter does not answer within some 40 us, or for any
-// other pin. [one thread at a time]
+// For read(), after something else has used the converter.
+void configure();
+// 4095 (boards::kAnalogFull) is the supply voltage. False when the converter does not answer within some 40 us, for any
+// other pin, or while the microphone is on. [one thread at a time]
 [[nodiscard]] bool read(std::uint16_t pin, std::uint16_t& voltage);
 
 }  // namespace robosync::boards::microbit::analog

@@ -7,6 +7,7 @@
 #include "runtime-m4/boards/microbit-v2/echoes.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
+#include "runtime-m4/boards/microbit-v2/microphone.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 #include "runtime-m4/boards/microbit-v2/speaker.hpp"
@@ -29,6 +30,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   port::core::enable_interrupt(gpiote::kInterrupt);
   lights::start();
   speaker::start();
+  microphone::start();
   player::start();
   port::core::enable_interrupt(row_timer::kInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
@@ -88,6 +90,14 @@ std::uint32_t Board::take_echo(std::uint16_t echo) {
 
 bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {
   return analog::read(pin, voltage);
+}
+
+void Board::listen(bool on) {
+  microphone::listen(on);
+}
+
+bool Board::hear(SoundBlock sound) {
+  return microphone::hear(sound);
 }
 
 void Board::let_go(std::uint16_t pin) {

@@ -64,6 +64,8 @@ public:
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
+  void listen(bool on) override;
+  bool hear(SoundBlock sound) override;
   void let_go(std::uint16_t pin) override;
   void take_back(std::uint16_t pin) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;

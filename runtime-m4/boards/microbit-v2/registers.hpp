@@ -166,6 +166,29 @@ constexpr Register value(unsigned channel) {
 }
 }  // namespace echo_timer
 
+// TIMER4, which asks for the samples of sound, and TIMER2, which counts their blocks.
+struct SoundTimer {
+  std::uintptr_t base;
+
+  constexpr Register start() const { return {base}; }
+  constexpr Register stop() const { return {base + 0x004}; }
+  constexpr Register count() const { return {base + 0x008}; }
+  constexpr Register clear() const { return {base + 0x00C}; }
+  constexpr Register capture() const { return {base + 0x040}; }
+  constexpr Register reached() const { return {base + 0x140}; }
+  constexpr Register shortcuts() const { return {base + 0x200}; }
+  constexpr Register mode() const { return {base + 0x504}; }
+  constexpr Register width() const { return {base + 0x508}; }
+  constexpr Register prescaler() const { return {base + 0x510}; }
+  constexpr Register value() const { return {base + 0x540}; }
+
+  static constexpr std::uint32_t kBeginAgain = 1U << 0;
+  static constexpr std::uint32_t kCountsEvents = 1;
+  static constexpr std::uint32_t k16MHz = 0;
+};
+inline constexpr SoundTimer kSampleTimer{0x4001'B000};
+inline constexpr SoundTimer kBlockCounter{0x4000'A000};
+
 namespace gpiote {  // channels that drive a pin by tasks, or report its edges as events
 inline constexpr unsigned kInterrupt = 6;
 inline constexpr std::uintptr_t kBase = 0x4000'6000;
@@ -195,6 +218,7 @@ constexpr std::uint32_t drives(Pin pin) {  // initially low
 namespace ppi {  // connects events to tasks in hardware
 inline constexpr std::uintptr_t kBase = 0x4001'F000;
 inline constexpr Register kOn{kBase + 0x504};  // a bit a channel
+inline constexpr Register kOff{kBase + 0x508};
 constexpr Register event(unsigned channel) {
   return {kBase + 0x510 + std::uintptr_t{8} * channel};
 }
@@ -221,8 +245,16 @@ inline constexpr Register kConfiguration{kBase + 0x518};
 // A quarter of the voltage is compared with a quarter of the supply after 10 us of acquisition, which suits sources up to
 // 100 kΩ.
 inline constexpr std::uint32_t kPartOfSupply = 2U << 8 | 1U << 12 | 2U << 16;
+inline constexpr Register kSoundInput{kBase + 0x520};  // of channel 1
+inline constexpr Register kSoundConfiguration{kBase + 0x528};
+// Four times the voltage is compared with a quarter of the supply, after 3 us of acquisition.
+inline constexpr std::uint32_t kFourTimes = 7U << 8 | 1U << 12;
 inline constexpr Register kResolution{kBase + 0x5F0};
 inline constexpr std::uint32_t k12Bits = 2;
+inline constexpr std::uint32_t k14Bits = 3;
+inline constexpr Register kOversampling{kBase + 0x5F4};
+inline constexpr std::uint32_t kNone = 0;
+inline constexpr std::uint32_t kMeanOf8 = 3;
 inline constexpr Register kResultsTo{kBase + 0x62C};
 inline constexpr Register kResultCount{kBase + 0x630};
 }  // namespace saadc

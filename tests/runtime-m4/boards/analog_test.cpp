@@ -99,6 +99,9 @@ struct ConverterOfMicrobit : tests::Nrf52833 {
       case 0x5F0:
         resolution = value;
         return;
+      case 0x5F4:
+        tests::demand(value == 0, "a result is one conversion");
+        return;
       case 0x62C:
         to = value;
         return;
