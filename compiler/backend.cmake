@@ -31,6 +31,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/devices.cpp
   config/entries.cpp
   config/fields.cpp
+  config/json_format.cpp
   config/json_mistakes.cpp
   config/json_reader.cpp
   config/names.cpp

@@ -29,6 +29,7 @@ static_assert(ROBOSYNC_ONE == vm::kScale && ROBOSYNC_UNKNOWN == vm::kUnknown);
 
 std::optional<vm::Dimension> dimension(std::uint8_t unit) {
   if (unit == ROBOSYNC_AS_INPUT) return std::nullopt;
+  if (unit == ROBOSYNC_COUNT) return vm::Dimension::number;
   return static_cast<vm::Dimension>(unit);
 }
 
@@ -49,8 +50,8 @@ compiler::AlgorithmModule described(const robosync_description& description) {
   for (std::size_t i = 0; i < module.parameters; ++i) {
     const robosync_parameter& parameter = description.parameters[i];
     const robosync_range& range = module.ranges[i];
-    result.parameters.push_back(
-        {parameter.name, dimension(parameter.unit), range.usual, range.least, range.most});
+    result.parameters.push_back({parameter.name, dimension(parameter.unit), range.usual,
+                                 range.least, range.most, parameter.unit == ROBOSYNC_COUNT});
   }
   result.shortest_period_ms = module.shortest_period_ms;
   result.longest_period_ms = module.longest_period_ms;

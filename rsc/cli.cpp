@@ -17,10 +17,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "compiler/diagnostics/nearest.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/options.hpp"
+#include "rsc/suggestions.hpp"
 #include "rsc/usage.hpp"
 #include "rsc/verb.hpp"
 
@@ -134,27 +134,14 @@ std::unique_ptr<CLI::App> make_parser(const Verb* only = nullptr) {
   return app;
 }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto near = compiler::nearest(word, candidates);
-  return near ? fmt::format("; did you mean `{}`?", *near) : std::string();
-}
-
 const Verb* find_verb(std::string_view name) {
   const auto* verb = std::ranges::find(kVerbs, name, &Verb::name);
   return verb == kVerbs.end() ? nullptr : verb;
 }
 
-std::vector<std::string> verb_names() {
-  std::vector<std::string> names;
-  names.reserve(kVerbs.size());
-  for (const Verb& verb : kVerbs)
-    names.emplace_back(verb.name);
-  return names;
-}
-
 [[noreturn]] void unknown_verb(std::string_view word) {
   throw Failure(Exit::usage, fmt::format("there is no verb `{}`{}\n`rsc help` lists them", word,
-                                         did_you_mean(word, verb_names())));
+                                         instead_of_verb(word)));
 }
 
 // "--seed: At Most 1 required but received 2", "--config: 1 required FILE missing". Empty: another error.
@@ -185,11 +172,12 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
     for (const CLI::Option* option : at.get_options()) {
       for (const std::string& name : option->get_lnames())
         known.push_back("--" + name);
+      for (const std::string& name : option->get_snames())
+        known.push_back("-" + name);
     }
-    message = word.starts_with("-")
-                  ? fmt::format("there is no option `{}`{}", word,
-                                did_you_mean(word.substr(0, word.find('=')), known))
-                  : fmt::format("`{}` is one argument too many", word);
+    message = word.starts_with("-") ? fmt::format("there is no option `{}`{}", word,
+                                                  instead_of_option(at.get_name(), word, known))
+                                    : fmt::format("`{}` is one argument too many", word);
   }
   if (const std::string said = mismatch(error); !said.empty()) message = said;
   const std::string help = &at == &app ? "rsc help" : "rsc help " + at.get_name();
@@ -201,9 +189,10 @@ void parse(CLI::App& app, int count, const char* const* arguments) {
   if (first.empty()) throw Failure(Exit::usage, "say what to do\n" + app.help());
   constexpr std::array<std::string_view, 3> kWithoutVerb = {"-h", "--help", "--version"};
   if (first.starts_with("-") && std::ranges::find(kWithoutVerb, first) == kWithoutVerb.end())
-    throw Failure(Exit::usage, fmt::format("`{}` is not a verb: write rsc VERB, then its options\n"
-                                           "`rsc help` lists the verbs",
-                                           first));
+    throw Failure(Exit::usage,
+                  fmt::format("`{}` is not a verb: write rsc VERB, then its options{}\n"
+                              "`rsc help` lists the verbs",
+                              first, instead_of_verb(first)));
   if (!first.starts_with("-") && find_verb(first) == nullptr) unknown_verb(first);
   try {
     app.parse(count, const_cast<char**>(arguments));  // CLI11 does not modify them

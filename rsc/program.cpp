@@ -154,6 +154,11 @@ Origin origin_of(const compiler::Result& result) {
   return origin;
 }
 
+void show_diagnostics(const compiler::Result& result, bool quiet) {
+  if (!quiet || result.diagnostics.errors() > 0)
+    std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+}
+
 std::string summary(const compiler::Diagnostics& diagnostics) {
   const std::size_t notes =
       diagnostics.all().size() - diagnostics.errors() - diagnostics.warnings();
@@ -203,7 +208,7 @@ Program load_program(const std::string& file, const CompileOptions& options) {
     return read_module(texts, user, name);
   };
   compiler::Result result = compile(file, options, modules, texts);
-  std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  show_diagnostics(result);
   print_json_errors(result, options);
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}", file, summary(result.diagnostics)));

@@ -56,6 +56,9 @@ struct CompileOptions {
 [[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options,
                                             const Texts& texts = Texts());
 
+// On stderr, for a person. `quiet`: only if there is an error.
+void show_diagnostics(const compiler::Result& result, bool quiet = false);
+
 // "0 errors, 1 warning, 2 notes".
 [[nodiscard]] std::string summary(const compiler::Diagnostics& diagnostics);
 

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "compiler/config/robot.hpp"
+#include "rsc/failure.hpp"
 #include "rsc/quantity.hpp"
 
 namespace robosync::tool {
@@ -95,6 +96,14 @@ void add_compile_options(Options& options, CompileOptions& how) {
   options.choice(
       "-O", {"0", "1"}, [&how](std::size_t level) { how.optimize = level > 0; },
       "1: optimise (default), 0: translate as written");
+}
+
+void add_quiet_option(Options& options, bool& quiet, const std::string& description) {
+  options.flag("-q,--quiet", quiet, description);
+}
+
+void refuse_quiet(bool refused, const std::string& other) {
+  if (refused) throw Failure(Exit::usage, "--quiet and " + other + " do not go together");
 }
 
 void add_duration_option(Options& options, const std::string& name,

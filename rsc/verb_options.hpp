@@ -26,6 +26,10 @@ void add_seed_option(Options& options, std::uint32_t& seed);
 void add_color_option(Options& options);
 // --config, --color, --allow, --warn and --deny, and -O0 or -O1.
 void add_compile_options(Options& options, CompileOptions& how);
+// -q, --quiet.
+void add_quiet_option(Options& options, bool& quiet, const std::string& description);
+// Throws Failure (usage) if --quiet does not go with another option that is given, too.
+void refuse_quiet(bool refused, const std::string& other);
 void add_duration_option(Options& options, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,
                          const std::string& description);

@@ -31,6 +31,7 @@ struct ModuleParameter {
   std::optional<vm::Dimension> dimension;  // nullopt: the unit of the first input
   vm::Value usual = 0;                     // if robot.json gives no value
   vm::Value min = 0, max = 0;
+  bool is_whole = false;  // takes no decimals
 };
 
 struct AlgorithmModule {

@@ -351,13 +351,15 @@ private:
                       vm::Value& into) {
     const auto read = read_quantity(value, unit, diagnostics_);
     if (!read) return;
-    if (*read >= parameter.min && *read <= parameter.max) {
+    const bool fits = !parameter.is_whole || *read % vm::kScale == 0;
+    if (fits && *read >= parameter.min && *read <= parameter.max) {
       into = *read;
       return;
     }
+    const std::string what = parameter.is_whole ? "a whole number " : "";
     diagnostics_
-        .report(Code::E0205, "this must be from " + format_value(parameter.min, unit) + " to " +
-                                 format_value(parameter.max, unit))
+        .report(Code::E0205, "this must be " + what + "from " + format_value(parameter.min, unit) +
+                                 " to " + format_value(parameter.max, unit))
         .label(value.span);
   }
 

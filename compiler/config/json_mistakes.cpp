@@ -6,6 +6,8 @@
 #include <cctype>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "compiler/config/values.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/character_names.hpp"
@@ -111,6 +113,14 @@ Span span_of(const Mistake& mistake, std::size_t begin, std::size_t end) {
   return {mistake.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
 }
 
+// A fix is certain only if it makes the whole text JSON: otherwise there is another mistake, and this may be a part of it.
+void mend(const Mistake& mistake, Span span, std::string_view replacement, Diagnostic& diagnostic) {
+  std::string mended(mistake.text);
+  mended.replace(span.begin, span.end - span.begin, replacement);
+  diagnostic.fix(span, std::string(replacement),
+                 nlohmann::json::accept(mended) ? Applicability::certain : Applicability::likely);
+}
+
 constexpr std::array<char32_t, 8> kCurlyQuotes = {0x2018, 0x2019, 0x201A, 0x201C,
                                                   0x201D, 0x201E, 0xAB,   0xBB};
 
@@ -131,8 +141,8 @@ bool is_in_curly_quotes(const Mistake& mistake, const WrongText& wrong, Diagnost
     const bool straight = point.value == '"';
     if (point.value == '\n' || point.value == '\\') break;
     if (straight || is_curly(point.value)) {
-      d.fix(span_of(mistake, wrong.begin, at + point.size),
-            "\"" + std::string(mistake.text.substr(inner, at - inner)) + "\"");
+      mend(mistake, span_of(mistake, wrong.begin, at + point.size),
+           "\"" + std::string(mistake.text.substr(inner, at - inner)) + "\"", d);
       break;
     }
     at += point.size;
@@ -150,10 +160,11 @@ bool is_foreign_word(const Mistake& mistake, const WrongText& wrong, Diagnostics
   if (!is_value) return false;
   for (const std::string_view known : {"true", "false"}) {
     if (!ascii::same(word, known) || word == known) continue;
-    diagnostics
-        .report(Code::E0201, "`" + word + "` is written `" + std::string(known) + "` in JSON")
-        .label(here)
-        .fix(here, std::string(known));
+    Diagnostic& d =
+        diagnostics
+            .report(Code::E0201, "`" + word + "` is written `" + std::string(known) + "` in JSON")
+            .label(here);
+    mend(mistake, here, known, d);
     return true;
   }
   if (word != "None" && (!ascii::same(word, "null") || word == "null")) return false;
@@ -251,11 +262,49 @@ bool is_semicolon(const Mistake& mistake, const WrongText& wrong, Diagnostics& d
   const std::size_t next = text.find_first_not_of(" \t\r\n", wrong.begin + 1);
   const bool last = next == std::string_view::npos || text[next] == '}' || text[next] == ']';
   const Span here = span_of(mistake, wrong.begin, wrong.end);
-  diagnostics
-      .report(Code::E0201,
-              last ? "the last entry needs no `;` in JSON" : "JSON needs a comma here, not `;`")
-      .label(here)
-      .fix(here, last ? "" : ",");
+  Diagnostic& d = diagnostics
+                      .report(Code::E0201, last ? "the last entry needs no `;` in JSON"
+                                                : "JSON needs a comma here, not `;`")
+                      .label(here);
+  mend(mistake, here, last ? "" : ",", d);
+  return true;
+}
+
+// `"type" "type": "PWM"`
+bool stands_twice(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string_view text = mistake.text;
+  if (wrong.begin == 0 || (text[wrong.begin] != '"' && !is_word(text[wrong.begin]))) return false;
+  std::size_t end = wrong.end;
+  if (text[wrong.begin] == '"') {
+    end = text.find('"', wrong.begin + 1);
+    if (end++ == std::string_view::npos) return false;
+  }
+  const std::string_view word = text.substr(wrong.begin, end - wrong.begin);
+  const std::size_t behind = wrong.before + 1;
+  if (word.size() > behind || text.substr(behind - word.size(), word.size()) != word) return false;
+  const std::size_t first = behind - word.size();
+  if (word.front() != '"' && first > 0 && is_word(text[first - 1])) return false;
+  Diagnostic& d =
+      diagnostics.report(Code::E0201, "`" + std::string(word) + "` is written twice in a row")
+          .label(span_of(mistake, wrong.begin, end));
+  mend(mistake, span_of(mistake, behind, end), "", d);
+  return true;
+}
+
+// In `[2, ]` the second number may be missing instead.
+bool is_extra_comma(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const char c = mistake.text[wrong.begin];
+  if (wrong.previous != ',' || (c != '}' && c != ']')) return false;
+  const Span comma = span_of(mistake, wrong.before, wrong.before + 1);
+  Diagnostic& d =
+      diagnostics.report(Code::E0201, std::string("there is an extra comma before `") + c + "`")
+          .label(comma);
+  const std::size_t last = mistake.text.find_last_not_of(" \t\r\n", wrong.before - 1);
+  const bool sure = c == '}' || (last != std::string_view::npos && mistake.text[last] == '}');
+  if (sure)
+    mend(mistake, comma, "", d);
+  else
+    d.fix(comma, "", Applicability::likely);
   return true;
 }
 
@@ -264,7 +313,8 @@ bool is_mended(const Mistake& mistake, const WrongText& wrong, Diagnostics& diag
          is_unclosed_string(mistake, wrong, diagnostics) ||
          is_wrong_bracket(mistake, wrong, diagnostics) ||
          is_round_bracket(mistake, wrong, diagnostics) ||
-         is_semicolon(mistake, wrong, diagnostics) ||
+         is_semicolon(mistake, wrong, diagnostics) || stands_twice(mistake, wrong, diagnostics) ||
+         is_extra_comma(mistake, wrong, diagnostics) ||
          (is_word(mistake.text[wrong.begin]) && is_foreign_word(mistake, wrong, diagnostics));
 }
 
@@ -286,22 +336,18 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
     const std::string number(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
     diagnostics.report(Code::E0201, no_room_for(number, canonical_unit(vm::Dimension::number)))
         .label(here);
-  } else if (wrong.previous == ',' && (c == '}' || c == ']')) {
-    diagnostics.report(Code::E0201, std::string("there is an extra comma before `") + c + "`")
-        .label(span(wrong.before, wrong.before + 1))
-        .fix(span(wrong.before, wrong.before + 1), "");
   } else if (mentions(mistake, "object separator") && wrong.previous == '"' && !is_space(c) &&
              c != ',') {
-    diagnostics
-        .report(Code::E0201, c == '=' ? "a key and its value need a colon between them, not `=`"
-                                      : "a colon is missing between the key and its value")
-        .label(here)
-        .fix(c == '=' ? here : span(wrong.before + 1, wrong.before + 1), ":");
+    Diagnostic& d =
+        diagnostics
+            .report(Code::E0201, c == '=' ? "a key and its value need a colon between them, not `=`"
+                                          : "a colon is missing between the key and its value")
+            .label(here);
+    mend(mistake, c == '=' ? here : span(wrong.before + 1, wrong.before + 1), ":", d);
   } else if (mistake.open_span && ends_value(wrong.previous) &&
              (c == '"' || c == '{' || c == '[') && wrong.before + 1 == mistake.good_until) {
-    diagnostics.report(Code::E0201, "a comma is missing before this")
-        .label(here)
-        .fix(span(wrong.before + 1, wrong.before + 1), ",");
+    mend(mistake, span(wrong.before + 1, wrong.before + 1), ",",
+         diagnostics.report(Code::E0201, "a comma is missing before this").label(here));
   } else {
     diagnostics.report(Code::E0201, describe_character(mistake, wrong)).label(here);
   }

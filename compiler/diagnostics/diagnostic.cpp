@@ -167,23 +167,39 @@ bool is_word_byte(char c) {
          ascii::is_letter(c);
 }
 
-// How often `word` occurs in the user's own programs; stops counting at 2. Skips robot.json: its names are right.
-std::size_t uses_of(std::string_view word, const SourceMap& sources) {
-  constexpr std::size_t enough = 2;
+constexpr std::size_t kEnoughUses = 2;  // counting stops here
+
+std::size_t uses_in(std::string_view text, std::string_view word) {
   std::size_t found = 0;
-  for (std::size_t id = 0; id < sources.size() && !word.empty(); ++id) {
-    const SourceFile& file = sources.file(static_cast<FileId>(id));
-    const std::string_view text = file.text();
-    if (file.name().starts_with('<') || id == kConfigurationFile) continue;
-    for (std::size_t at = text.find(word); at != std::string_view::npos && found < enough;
-         at = text.find(word, at + 1)) {
-      const std::size_t end = at + word.size();
-      const bool whole = (at == 0 || !is_word_byte(text[at - 1])) &&
-                         (end == text.size() || !is_word_byte(text[end]));
-      if (whole) ++found;
-    }
+  for (std::size_t at = text.find(word); at != std::string_view::npos && found < kEnoughUses;
+       at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const bool whole = (at == 0 || !is_word_byte(text[at - 1])) &&
+                       (end == text.size() || !is_word_byte(text[end]));
+    if (whole) ++found;
   }
   return found;
+}
+
+// How often `word` occurs in the user's own programs.
+std::size_t uses_of(std::string_view word, const SourceMap& sources) {
+  std::size_t found = 0;
+  for (std::size_t id = 0; id < sources.size() && !word.empty() && found < kEnoughUses; ++id) {
+    const SourceFile& file = sources.file(static_cast<FileId>(id));
+    if (!file.name().starts_with('<') && id != kConfigurationFile)
+      found += uses_in(file.text(), word);
+  }
+  return found;
+}
+
+// May the word that a fix gives be the misspelt one? A name of a program, if nothing uses it. A name of robot.json is right; but a
+// text, such as the name of a sound, only if a program uses it, too.
+bool is_doubtful(const Diagnostic& diagnostic, const SourceMap& sources) {
+  const std::string& word = diagnostic.fixes.front().replacement;
+  const bool in_json = sources.size() > kConfigurationFile && !word.empty() &&
+                       uses_in(sources.file(kConfigurationFile).text(), word) > 0;
+  const std::size_t uses = uses_of(word, sources);
+  return diagnostic.code == Code::E0502 ? in_json && uses == 0 : !in_json && uses == 1;
 }
 
 }  // namespace
@@ -211,12 +227,13 @@ void Diagnostics::doubt_names(const SourceMap& sources) {
   for (const Diagnostic& diagnostic : all_)
     if (diagnostic.level == Level::error) ++errors[line_of(diagnostic)];
   for (Diagnostic& diagnostic : all_) {
-    if (diagnostic.code != Code::E0501 || diagnostic.fixes.empty()) continue;
+    const bool of_name = diagnostic.code == Code::E0501 || diagnostic.code == Code::E0502;
+    if (!of_name || diagnostic.fixes.empty()) continue;
     const Fix& fix = diagnostic.fixes.front();
     if (fix.applicability != Applicability::certain) continue;
     const bool sure = errors[line_of(diagnostic)] == 1 && searches > 0 &&
                       uses_of(sources.text(fix.span), sources) == 1 &&
-                      uses_of(fix.replacement, sources) != 1;
+                      !is_doubtful(diagnostic, sources);
     if (searches > 0) --searches;
     if (!sure) make_likely(diagnostic);
   }

@@ -86,8 +86,8 @@ public:
   [[nodiscard]] bool may_search(std::size_t names);
   // If the region has more than one error, the first guess may be wrong: makes no fix in it certain.
   void doubt(Span region);
-  // Makes the fix of an unknown name uncertain when the other name may be the misspelt one: when that one is used
-  // nowhere else, or the unknown one is used again.
+  // Makes the fix of an unknown name or text uncertain when the other one may be misspelt: when that one is used nowhere else,
+  // or the unknown one is used again.
   void doubt_names(const SourceMap& sources);
   // Sorts by file and place, drops exact repetitions, and merges messages with one cause into one with all its places.
   // Call once before printing.

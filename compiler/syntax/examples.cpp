@@ -285,7 +285,7 @@ const OwnNames::Name* OwnNames::find(std::initializer_list<TokenKind> declared,
 
 std::string Examples::written_like(const Tokens& piece, std::size_t at) const {
   const WrittenLine line(piece, at, source_);
-  if (line.starts_at()) return {};
+  if (line.starts_at() || line.text(0).empty()) return {};  // empty: a repair put it there
   const Filling filling(line, own_, robot_);
   const auto* const found =
       std::ranges::find_if(kShapes, [&](const LineShape& one) { return fits(one, line); });

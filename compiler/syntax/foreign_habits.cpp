@@ -229,8 +229,9 @@ private:
   std::optional<Edit> definition() {
     const std::size_t first = begin_, name = first + 1, open = first + 2;
     const bool named = stop_ == first && !open_block() && is(name, Kinds::NAME) &&
-                       is_any_name(first, {"FUNCTION", "FUNC", "FUN", "FN", "DEF", "PROCEDURE",
-                                           "PROC", "SUB", "VOID"});
+                       std::ranges::any_of(kForeignDefines, [&](std::string_view word) {
+                         return is_name(first, word);
+                       });
     if (!named) return std::nullopt;
     Tokens head{{Kinds::DEFINE, tokens_[first].span}, tokens_[name]};
     std::string better = "DEFINE " + std::string(text(name));
@@ -244,7 +245,23 @@ private:
            tokens_[first].span)
         .helps("write `" + better + "`")
         .fix(span(first, end_), better, Applicability::likely);
-    return change(first, end_ - first, std::move(head));
+    const std::size_t behind = behind_indented(first);
+    if (is(behind, Kinds::END)) return change(first, end_ - first, std::move(head));
+    // Other languages end it with a brace, or with nothing.
+    head.insert(head.end(), token_at(end_), token_at(behind));
+    for (const TokenKind kind : {Kinds::NEWLINE, Kinds::END, Kinds::NEWLINE})
+      head.push_back(missing(kind, behind));
+    return change(first, behind - first, std::move(head));
+  }
+
+  // The first word of the next line that is not indented more than this one.
+  std::size_t behind_indented(std::size_t first) const {
+    std::size_t at = end_;
+    while (at < tokens_.size() &&
+           (is(at, Kinds::NEWLINE) || !starts_line(tokens_, at) ||
+            indentation(tokens_[at], source_) > indentation(tokens_[first], source_)))
+      ++at;
+    return at;
   }
 
   Tokens::const_iterator token_at(std::size_t at) const {
@@ -363,7 +380,7 @@ private:
     const std::string opposite = is_true ? "FALSE" : "TRUE";
     report(Code::E0007,
            "`IS NOT " + text(stop_, stop_ + 1) + "` is written `IS " + opposite + "` in RSL", both)
-        .fix(both, opposite);
+        .fix(both, opposite, Applicability::likely);
     return change(stop_ - 1, 2, {{is_true ? Kinds::FALSE : Kinds::TRUE, both}});
   }
 

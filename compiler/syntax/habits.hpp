@@ -3,7 +3,9 @@
 // to the search for the cheapest change (edit.hpp).
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
@@ -20,6 +22,10 @@ namespace robosync::compiler {
     return "to repeat something here, write `REPEAT FOREVER`, with a `WAIT` in it";
   return "to check once while the response runs, write `IF`";
 }
+
+// What other languages write in place of DEFINE.
+inline constexpr std::array<std::string_view, 9> kForeignDefines = {
+    "FUNCTION", "FUNC", "FUN", "FN", "DEF", "PROCEDURE", "PROC", "SUB", "VOID"};
 
 // Habits from other constructs of RSL (habits.cpp) and from other languages (foreign_habits.cpp), and words that mean
 // something else where they are (misplaced_words.cpp).

@@ -87,6 +87,19 @@ bool is_line_of_name(const Tokens& tokens, std::size_t at) {
          is_one_of(tokens[at + 1].kind, {Kinds::NEWLINE, Kinds::WITH, Kinds::END});
 }
 
+// A block with nothing in it would be a second mistake at the same place.
+void fill_empty_block(Tokens& tokens, std::size_t line_end) {
+  if (tokens[line_end].kind != Kinds::NEWLINE) return;
+  std::size_t next = line_end;
+  while (next < tokens.size() && tokens[next].kind == Kinds::NEWLINE)
+    ++next;
+  if (next == tokens.size() || tokens[next].kind != Kinds::END) return;
+  Span gap = tokens[next].span;
+  gap.end = gap.begin;
+  tokens.insert(tokens.begin() + static_cast<std::ptrdiff_t>(next),
+                {{Kinds::LOG, gap}, {Kinds::STRING, gap}, {Kinds::NEWLINE, gap}});
+}
+
 }  // namespace
 
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
@@ -105,6 +118,7 @@ void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
       if (tokens[use].kind == name.kind && source.text(tokens[use].span) == word &&
           (everywhere || is_line_of_name(tokens, use)))
         tokens[use].kind = Kinds::NAME;
+    if (define) fill_empty_block(tokens, at + 2);
   }
 }
 

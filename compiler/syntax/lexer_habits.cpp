@@ -1,9 +1,14 @@
 // Part of the lexer: habits from other languages that the text of a line shows. Each is reported and read as what was
 // meant. See lexer_state.hpp.
 #include <algorithm>
+#include <array>
+#include <span>
+
+#include <fmt/format.h>
 
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/lexer_state.hpp"
 
@@ -358,12 +363,47 @@ LexerState::Brace LexerState::brace_opens_a_block() {
   return Brace::for_do;
 }
 
+// The first word of the line that opens the block, which may be the line above the brace.
+std::string_view LexerState::word_before_brace() const {
+  const std::string_view before = text_.substr(0, text_.find_last_not_of(" \t\r\n{", start_) + 1);
+  std::string_view line = before.substr(before.find_last_of("\r\n") + 1);
+  line.remove_prefix(std::min(line.find_first_not_of(" \t}"), line.size()));
+  return line.substr(0, line.find_first_of(" \t("));
+}
+
+namespace {
+
+bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
+  return std::ranges::any_of(words, [word](auto one) { return ascii::same(word, one); });
+}
+
+struct BraceLine {
+  std::string_view first, in_rsl;
+};
+constexpr std::array kBraceLines = {BraceLine{"IF", "IF touch LEVEL > 3 DO"},
+                                    BraceLine{"ELSE", "ELSE"},
+                                    BraceLine{"WHILE", "WHILE touch LEVEL > 3 DO"},
+                                    BraceLine{"DEFINE", "DEFINE greet"},
+                                    BraceLine{"FOR", "REPEAT 3 TIMES"},
+                                    BraceLine{"REPEAT", "REPEAT 3 TIMES"}};
+
+std::string_view line_with(std::string_view first) {
+  const auto* const line = std::ranges::find_if(
+      kBraceLines, [first](const BraceLine& one) { return ascii::same(one.first, first); });
+  return line == kBraceLines.end() ? "WHEN touch LEVEL > 3 DO" : line->in_rsl;
+}
+
+}  // namespace
+
+// In `function wave() {` the word is the mistake.
 void LexerState::opening_brace() {
-  if (!has_brace_)
+  const std::string_view first = word_before_brace();
+  const bool reported = has_brace_ || is_one_of(first, kForeignDefines);
+  if (!reported)
     report(Code::E0002, "RSL has no braces: a block ends with `END`")
         .label(here())
-        .helps("write `WHEN touch LEVEL > 3 DO`, then the commands, then `END`");
-  has_brace_ = true;
+        .helps(fmt::format("write `{}`, then the commands, then `END`", line_with(first)));
+  has_brace_ = has_brace_ || !reported;
   braces_.push_back(brace_opens_a_block());
 }
 

@@ -45,6 +45,7 @@ private:
   void comment();
   void instead(TokenKind meant, std::string_view spelling);
   void left_out(std::string_view why);
+  std::string_view word_before_brace() const;
   void opening_brace();
   void closing_brace();
   void foreign_comment();

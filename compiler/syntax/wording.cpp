@@ -146,7 +146,8 @@ private:
     diagnostics_.report(Code::E0007, "RSL does not know the word " + quote(edit_.at) + " here")
         .label(tokens_[edit_.at].span, "did you mean `" + better + "`?")
         .fix(tokens_[edit_.at].span, better,
-             is_only_slip() ? Applicability::certain : Applicability::likely);
+             is_only_slip() && !stands_twice(edit_.at) ? Applicability::certain
+                                                       : Applicability::likely);
   }
 
   // True when this is the only word of RSL within one typing slip.
@@ -279,7 +280,7 @@ private:
       show_line(message, edit_.at, failure_.expected);
       return;
     }
-    if (unit_apart() || texts_added(edit_.at)) return;
+    if (unit_apart() || texts_added(edit_.at) || nothing_follows()) return;
     Diagnostic& message =
         diagnostics_.report(Code::E0009, quote(edit_.at) + " does not belong here");
     if (belongs_to_number(edit_.at) || (says_what_is_done(token.kind) && !stands_twice(edit_.at))) {
@@ -292,6 +293,25 @@ private:
     if (message.fixes.empty() || !stands_twice(edit_.at)) show_line(message, edit_.at, {});
   }
 
+  // `WHEN` or `DEFINE` alone in a line, which the grammar would leave out, or what follows it.
+  bool nothing_follows() {
+    const std::size_t head = begins_alone(edit_.at) ? edit_.at : failure_.before;
+    if (head > edit_.at || !begins_alone(head)) return false;
+    const Span word = tokens_[head].span;
+    Diagnostic& message =
+        diagnostics_.report(Code::E0008, "the rest of the line is missing after " + quote(head));
+    message.label({word.file, word.end, word.end}, "here");
+    const std::string example = examples_.written_like(tokens_, head + 1);
+    if (!example.empty()) message.helps(example);
+    return true;
+  }
+  bool begins_alone(std::size_t at) const {
+    const bool ends = at + 1 >= tokens_.size() || tokens_[at + 1].kind == Kinds::NEWLINE;
+    return ends && starts_line(tokens_, at) &&
+           ((roles_of(tokens_[at].kind) & role::item) != 0 ||
+            is_one_of(tokens_[at].kind, {Kinds::WHEN, Kinds::WHILE}));
+  }
+
   // Without such a word the line or the block would do something else: a mistake next to it is more likely.
   static bool says_what_is_done(TokenKind kind) {
     return is_one_of(kind, {Kinds::NOT, Kinds::ELSE, Kinds::RESUME, Kinds::OTHERWISE}) ||
@@ -299,13 +319,14 @@ private:
   }
 
   // A token written twice in a row is meant once. Any other extra token may lack something next to it. Between two commas
-  // something may be missing, and removing a NOT is never certain.
+  // something may be missing, the other bracket may be elsewhere, and removing a NOT is never certain.
   bool stands_twice(std::size_t at) const {
     const auto same = [&](std::size_t other) {
       return other < tokens_.size() && tokens_[other].kind == tokens_[at].kind &&
              quote(other) == quote(at);
     };
-    const bool never = tokens_[at].kind == Kinds::COMMA || tokens_[at].kind == Kinds::NOT;
+    const bool never =
+        is_one_of(tokens_[at].kind, {Kinds::COMMA, Kinds::NOT, Kinds::OPEN, Kinds::CLOSE});
     return !never && (same(at + 1) || (at > 0 && same(at - 1)));
   }
 

@@ -28,13 +28,15 @@ public:
   using MistakenLine::MistakenLine;
 
   std::optional<Edit> find() {
+    if (auto edit = empty_define()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Form = std::optional<Edit> (WrongForms::*)();
     for (const Form form :
          {&WrongForms::name_of_words, &WrongForms::ended_condition, &WrongForms::becomes,
           &WrongForms::once, &WrongForms::waits, &WrongForms::step, &WrongForms::text_before_more,
           &WrongForms::stop_for, &WrongForms::item, &WrongForms::parameters, &WrongForms::at_time,
-          &WrongForms::counted_up, &WrongForms::words_of_state, &WrongForms::block_outside})
+          &WrongForms::word_behind_define, &WrongForms::counted_up, &WrongForms::words_of_state,
+          &WrongForms::block_outside})
       if (auto edit = (this->*form)()) return edit;
     return std::nullopt;
   }
@@ -328,6 +330,48 @@ private:
         "write `{0}, {1}`", text(stop_ - 1), text(stop_))
         .fix(gap, ",", Applicability::likely);
     return instead(stop_, 0, {Kinds::COMMA});
+  }
+
+  // `DEFINE greet`, and then the next rule or the end
+  std::optional<Edit> empty_define() {
+    if (!is(0, Kinds::DEFINE) || !is(1, Kinds::NAME) || stop_ < 2) return std::nullopt;
+    const std::size_t next = after_line_ends(2);
+    const bool rule =
+        is_rule(next) && indentation(tokens_[next], source_) <= indentation(tokens_[0], source_);
+    if (next == 2 || stop_ > next || !(rule || next == tokens_.size())) return std::nullopt;
+    Diagnostic& d = say(Code::E0005, tokens_[0].span, "this `DEFINE` has no commands and no `END`",
+                        "write the commands that `{0}` stands for, then `END`", text(1));
+    if (rule) d.label(tokens_[next].span, "a rule begins here", false);
+    return instead(3, next - 3,
+                   {Kinds::LOG, Kinds::STRING, Kinds::NEWLINE, Kinds::END, Kinds::NEWLINE});
+  }
+  std::size_t after_line_ends(std::size_t at) const {
+    while (is(at, Kinds::NEWLINE))
+      ++at;
+    return at;
+  }
+  bool is_rule(std::size_t at) const {
+    return at < tokens_.size() &&
+           is_one_of(tokens_[at].kind, {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT});
+  }
+
+  // `DEFINE greet DO`, `DEFINE greet AS`
+  std::optional<Edit> word_behind_define() {
+    const std::size_t word = statement_ + 2, next = after_line_ends(word + 1);
+    const bool foreign =
+        is(word, Kinds::DO) || is(word, Kinds::IS) || is_any_name(word, {"AS", "MEANS"});
+    if (!begins_with(Kinds::DEFINE) || !is(statement_ + 1, Kinds::NAME) || stop_ != word ||
+        !foreign || next == word + 1)
+      return std::nullopt;
+    say(Code::E0009, tokens_[word].span,
+        "the first line of a DEFINE ends with its name, without `{0}`", "write `DEFINE {1}`",
+        text(word), text(statement_ + 1))
+        .fix(tokens_[word].span, "", Applicability::likely);
+    // That there is nothing in it is no second mistake.
+    if (is(next, Kinds::END)) return instead(word, 1, {Kinds::NEWLINE, Kinds::LOG, Kinds::STRING});
+    if (!is_rule(next) && next < tokens_.size()) return change(word, 1);
+    return instead(word, 1,
+                   {Kinds::NEWLINE, Kinds::LOG, Kinds::STRING, Kinds::NEWLINE, Kinds::END});
   }
 
   // `AT 5s DO`

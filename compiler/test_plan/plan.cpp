@@ -102,7 +102,7 @@ private:
     now_ = *at;
     reach(now_);
     name_channel(*channel);
-    test_.readings.push_back({now_, *channel, *value});
+    test_.readings.push_back({now_, *channel, *value, span});
   }
 
   bool may_feed(ChannelRef ref, Span span) {

@@ -27,6 +27,7 @@ struct PlannedReading {
   Milliseconds at = 0;
   ChannelRef channel;
   vm::Value value = 0;
+  Span span{};  // of its step
 };
 
 // A command, matched by the parts that are written: verb, word and parameters.

@@ -1,6 +1,10 @@
 // textDocument/formatting: the text in the standard style.
 #include <algorithm>
+#include <optional>
+#include <string>
 
+#include "compiler/config/json_format.hpp"
+#include "compiler/config/json_reader.hpp"
 #include "compiler/syntax/format.hpp"
 #include "compiler/syntax/parser.hpp"
 #include "rsc/lsp/answers.hpp"
@@ -31,20 +35,30 @@ Json difference(const SourceFile& before, std::string_view after, Encoding encod
           {"newText", after.substr(begin, after.size() - kept - begin)}};
 }
 
+// Nothing if the text has errors, which are shown already.
+std::optional<std::string> formatted(const Document& document) {
+  SourceMap sources;
+  compiler::Diagnostics diagnostics;
+  const compiler::FileId file = sources.add("", std::string(document.source.text()));
+  if (name_of(document.uri).ends_with(".json")) {
+    const auto root = compiler::json::read(sources, file, diagnostics);
+    if (!root) return std::nullopt;
+    return compiler::json::formatted(sources, file, *root);
+  }
+  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
+  if (diagnostics.errors() > 0) return std::nullopt;
+  auto result = compiler::formatted(sources, file, tree);
+  if (!result) throw Refusal("this text cannot be formatted without changing its meaning");
+  return result;
+}
+
 }  // namespace
 
 Json formatting(Desk desk, const Json& params) {
   const Document* const document = desk.workspace.find(address_in(params));
   if (document == nullptr) throw Refusal("this text is not open");
-  if (name_of(document->uri).ends_with(".json")) return nullptr;
-  SourceMap sources;
-  compiler::Diagnostics diagnostics;
-  const compiler::FileId file = sources.add("", std::string(document->source.text()));
-  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
-  // Errors are shown already.
-  if (diagnostics.errors() > 0) return nullptr;
-  const auto result = compiler::formatted(sources, file, tree);
-  if (!result) throw Refusal("this text cannot be formatted without changing its meaning");
+  const std::optional<std::string> result = formatted(*document);
+  if (!result) return nullptr;
   if (*result == document->source.text()) return Json::array();
   return Json::array({difference(document->source, *result, desk.workspace.encoding())});
 }

@@ -40,7 +40,7 @@ public:
       }
       const link::Event* const found = find(matches);
       if (expected.no && found != nullptr) {
-        return fmt::format("{} was told at {}: {}", actuator, seconds_text(found->time_us),
+        return fmt::format("it came at {}: {}", seconds_text(found->time_us),
                            trace_words(*found, names_));
       }
       if (!expected.no && found == nullptr) {

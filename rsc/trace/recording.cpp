@@ -34,11 +34,18 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
   return std::nullopt;
 }
 
+// By a later step for the same time.
+bool is_replaced(const compiler::test_plan::PlannedTest& test, const PlannedReading& reading) {
+  return std::ranges::any_of(test.readings, [&](const PlannedReading& other) {
+    return &other > &reading && other.channel == reading.channel && other.at == reading.at;
+  });
+}
+
 }  // namespace
 
 Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
                  const compiler::test_plan::PlannedTest& test) {
-  Recording recording{&program.image(), &program.origin(), &plan, &test, {}, {}};
+  Recording recording{&program.image(), &program.origin(), &plan, &test, {}, {}, {}};
   const std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   const sim::Simulator* robot = nullptr;
   const auto take = [&](const link::Event& event) {
@@ -57,6 +64,11 @@ Recording record(const Program& program, const compiler::test_plan::TestPlan& pl
     if (channel) simulator.feed(reading.at * kMicroseconds, *channel, reading.value);
   }
   simulator.run_until(test.end * kMicroseconds);
+  for (const PlannedReading& reading : test.readings) {
+    const auto channel = channel_of(program.image(), plan.channels.at(reading.channel));
+    const bool sampled = !channel || simulator.is_sampled(reading.at * kMicroseconds, *channel);
+    if (!sampled && !is_replaced(test, reading)) recording.unseen.push_back(&reading);
+  }
   return recording;
 }
 

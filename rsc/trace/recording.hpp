@@ -20,6 +20,8 @@ struct Recording {
   const compiler::test_plan::PlannedTest* test = nullptr;
   std::vector<link::Event> events;        // in the order they happened
   std::vector<link::ThreadInfo> threads;  // when the first event named a thread; else empty
+  // Values that no sample of their sensor measured.
+  std::vector<const compiler::test_plan::PlannedReading*> unseen;
 };
 
 // `program` and `plan` must outlive the result. Throws Failure (program) if the robot refuses the

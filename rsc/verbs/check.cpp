@@ -33,6 +33,7 @@ struct CheckOptions {
   CompileOptions how;
   bool timing = false;
   bool anyway = false;
+  bool quiet = false;
   Report format = Report::human;
 };
 
@@ -79,7 +80,8 @@ public:
     compiler::Result result = compile_file(file, options_.how, CheckedTexts());
     switch (options_.format) {
       case Report::human:
-        std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+        show_diagnostics(result, options_.quiet);
+        if (options_.quiet) break;
         std::cout << fmt::format("{}: {}", result.sources.file(compiler::kProgramFile).name(),
                                  summary(result.diagnostics))
                   << std::endl;
@@ -144,7 +146,10 @@ void add_check(Options& options) {
       "--format", {"human", "json", "sarif"},
       [asked](std::size_t index) { asked->format = static_cast<Report>(index); },
       "human, json or sarif (2.1.0)");
+  add_quiet_option(options, asked->quiet, "say nothing if there is no error");
   options.runs([asked] {
+    refuse_quiet(asked->quiet && asked->timing, "--timing");
+    refuse_quiet(asked->quiet && asked->format != Report::human, "--format");
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     check(*asked);
   });

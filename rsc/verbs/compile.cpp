@@ -22,6 +22,7 @@ struct OutputOptions {
   std::string file, output;
   bool strip = false;
   bool anyway = false;
+  bool quiet = false;
   CompileOptions how;
   Format format = Format::human;
 };
@@ -61,7 +62,7 @@ void print_json(std::ostream& out, const std::string& output, const Program& pro
 void compile(const OutputOptions& options) {
   const std::string output = output_name(options);
   compiler::Result result = compile_file(options.file, options.how);
-  std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
+  show_diagnostics(result, options.quiet);
   print_json_errors(result, options.how);
   if (result.diagnostics.errors() > 0) {
     throw Failure(Exit::program, fmt::format("{}: {}; nothing was written", options.file,
@@ -72,6 +73,7 @@ void compile(const OutputOptions& options) {
   // If the image goes to stdout, the report must not.
   std::ostream& out = is_stdout(output) ? std::cerr : std::cout;
   write_output(output, program.bytes());
+  if (options.quiet) return;
   options.format == Format::json ? print_json(out, output, program)
                                  : print_human(out, output, program);
 }
@@ -88,7 +90,9 @@ void add_compile(Options& options) {
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_format_option(options, asked->format);
+  add_quiet_option(options, asked->quiet, "say nothing if there is no error");
   options.runs([asked] {
+    refuse_quiet(asked->quiet && asked->format == Format::json, "--format json");
     asked->how.json = asked->format == Format::json;
     asked->how.source_lines = !asked->strip;
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;

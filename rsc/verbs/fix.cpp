@@ -27,6 +27,7 @@ struct FixOptions {
   std::vector<std::string> files;
   CompileOptions how;
   bool likely = false;
+  bool quiet = false;
 };
 
 // The files with the fixes so far; nothing is written before the end.
@@ -56,8 +57,9 @@ public:
     for (int round = 0; round < kRounds && apply(chosen(result), result); ++round)
       result = compile_file(file_, options_.how, texts_);
     texts_.write();
-    std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
-    std::cout << fmt::format("{}: {} fixed; {}\n", file_, mended_, summary(result.diagnostics));
+    show_diagnostics(result, options_.quiet);
+    if (!options_.quiet)
+      std::cout << fmt::format("{}: {} fixed; {}\n", file_, mended_, summary(result.diagnostics));
     if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
   }
 
@@ -140,6 +142,7 @@ void add_fix(Options& options) {
                     Options::Need::required);
   options.flag("--likely", asked->likely, "also ask about fixes that are likely");
   add_compile_options(options, asked->how);
+  add_quiet_option(options, asked->quiet, "say nothing if no error is left");
   options.runs([asked] { fix(*asked); });
 }
 

@@ -1,4 +1,6 @@
 // rsc fmt FILE... [--check]
+#include <cstddef>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -9,7 +11,11 @@
 
 #include <fmt/format.h>
 
+#include "compiler/config/json_format.hpp"
+#include "compiler/config/json_reader.hpp"
 #include "compiler/diagnostics/render.hpp"
+#include "compiler/source/ascii.hpp"
+#include "compiler/source/utf8.hpp"
 #include "compiler/syntax/format.hpp"
 #include "compiler/syntax/parser.hpp"
 #include "rsc/console.hpp"
@@ -18,6 +24,7 @@
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
+#include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -25,35 +32,57 @@ namespace {
 struct FormatOptions {
   std::vector<std::string> files;
   bool check = false;
+  bool quiet = false;
 };
+
+bool is_json(const std::string& name, std::string_view text) {
+  const std::string_view words = compiler::utf8::without_byte_order_mark(text);
+  const std::size_t first = words.find_first_not_of(" \t\r\n");
+  return compiler::ascii::same(std::filesystem::path(name).extension().string(), ".json") ||
+         (first != std::string_view::npos && words[first] == '{');
+}
+
+std::optional<std::string> formatted_json(const compiler::SourceMap& sources, compiler::FileId file,
+                                          compiler::Diagnostics& diagnostics) {
+  const auto root = compiler::json::read(sources, file, diagnostics);
+  if (!root) return std::nullopt;
+  return compiler::json::formatted(sources, file, *root);
+}
+
+std::optional<std::string> formatted_program(const compiler::SourceMap& sources,
+                                             compiler::FileId file,
+                                             compiler::Diagnostics& diagnostics) {
+  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
+  if (diagnostics.errors() > 0) return std::nullopt;
+  return compiler::formatted(sources, file, tree);
+}
 
 // The formatted text; nothing if it has errors, which are printed.
 std::optional<std::string> formatted(const std::string& name, const std::string& text) {
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(name, text);
-  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
+  std::optional<std::string> result = is_json(name, text)
+                                          ? formatted_json(sources, file, diagnostics)
+                                          : formatted_program(sources, file, diagnostics);
   diagnostics.finish();
-  if (diagnostics.errors() > 0) {
+  if (diagnostics.errors() > 0)
     std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr())
               << fmt::format("{}: {}; it is unchanged\n", name, summary(diagnostics));
-    return std::nullopt;
-  }
-  std::optional<std::string> result = compiler::formatted(sources, file, tree);
-  if (!result)
+  else if (!result)
     std::cerr << fmt::format("{}: cannot be formatted without changing it; it is unchanged\n",
                              name);
   return result;
 }
 
-bool format_file(const std::string& name, bool check) {
+bool format_file(const std::string& name, const FormatOptions& options) {
   const std::string text = read_text(name);
   const std::optional<std::string> result = formatted(name, text);
   if (!result) return false;
   if (*result == text) return true;
-  std::cout << name << '\n';
-  if (!check) write_edited(name, std::as_bytes(std::span(*result)));
-  return !check;
+  if (!options.quiet) std::cout << name << '\n';
+  if (!options.check) write_edited(name, std::as_bytes(std::span(*result)));
+  return !options.check;
 }
 
 // Reads stdin and writes stdout, for editors.
@@ -66,7 +95,7 @@ bool format_stdin() {
 
 void format(const FormatOptions& options) {
   const Exit exit = for_each_file(options.files, [&](const std::string& file) {
-    const bool good = file == "-" ? format_stdin() : format_file(file, options.check);
+    const bool good = file == "-" ? format_stdin() : format_file(file, options);
     if (!good) throw Failure(Exit::program, "");
   });
   if (exit != Exit::fine) throw Failure(exit, "");
@@ -77,9 +106,10 @@ void format(const FormatOptions& options) {
 void add_fmt(Options& options) {
   auto asked = std::make_shared<FormatOptions>();
   options.arguments("FILE", asked->files,
-                    "programs (.rsl), rewritten if they change; -: stdin to stdout",
+                    "programs (.rsl) and robot.json, rewritten if they change; -: stdin to stdout",
                     Options::Need::required);
   options.flag("--check", asked->check, "change nothing; exit 1 when a file would change");
+  add_quiet_option(options, asked->quiet, "do not name the files that change");
   options.runs([asked] { format(*asked); });
 }
 

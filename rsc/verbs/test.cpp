@@ -31,6 +31,7 @@ struct TestOptions {
   std::vector<std::string> files;
   CompileOptions how;
   Format format = Format::human;
+  bool quiet = false;
 };
 
 struct Tally {
@@ -72,9 +73,26 @@ private:
   }
 
   void print(const TestResult& result) const {
+    const bool fine = result.failed == nullptr && result.recording.unseen.empty();
+    if (options_.quiet && fine) return;
     std::cout << (result.failed == nullptr ? "ok      " : "FAILED  ") << result.test->title << '\n';
     if (result.failed != nullptr) print_failure(result);
+    for (const auto* const reading : result.recording.unseen)
+      print_step(reading->span, "warning: " + why_unseen(result, *reading));
     std::cout << std::flush;
+  }
+
+  static std::string why_unseen(const TestResult& result,
+                                const compiler::test_plan::PlannedReading& reading) {
+    const std::string& sensor = result.recording.plan->channels.at(reading.channel).sensor;
+    const vm::Image& image = *result.recording.image;
+    const auto found =
+        std::ranges::find(image.sensors, std::string_view(sensor),
+                          [&](const vm::Sensor& one) { return image.string(one.name); });
+    return fmt::format(
+        "the robot never sees this: {} is sampled every {} ms, and the value does not last "
+        "until a sample",
+        sensor, found == image.sensors.end() ? 0 : found->period_ms);
   }
 
   void print_failure(const TestResult& result) const {
@@ -111,6 +129,9 @@ private:
               {"line", line(result.test->span)},
               {"test", result.test->title},
               {"ok", result.failed == nullptr}};
+    for (const auto* const reading : result.recording.unseen)
+      test["warnings"].push_back(
+          {{"line", line(reading->span)}, {"text", why_unseen(result, *reading)}});
     if (result.failed != nullptr) {
       Json timeline = Json::array();
       const TraceNames names{result.recording.image, result.recording.threads,
@@ -134,7 +155,7 @@ private:
 
 void test_file(const std::string& file, const TestOptions& options, Tally& tally) {
   compiler::Result compiled = compile_file(file, options.how);
-  std::cerr << compiler::render_human(compiled.diagnostics, compiled.sources, color_on_stderr());
+  show_diagnostics(compiled, options.quiet);
   if (compiled.diagnostics.errors() > 0) {
     const Json wrong = Json::parse(compiler::render_json(compiled.diagnostics, compiled.sources));
     for (const Json& one : wrong.at("diagnostics"))
@@ -161,7 +182,7 @@ void test(const TestOptions& options) {
                       {"failed", tally.failed},
                       {"diagnostics", tally.diagnostics}};
     std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-  } else if (exit == Exit::fine || tally.passed + tally.failed > 0) {
+  } else if (!options.quiet && (exit == Exit::fine || tally.passed + tally.failed > 0)) {
     std::cout << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
   }
   const Exit worst = tally.failed > 0 ? std::max(exit, Exit::program) : exit;
@@ -175,7 +196,11 @@ void add_test(Options& options) {
   options.arguments("FILE", asked->files, "programs (.rsl)", Options::Need::required);
   add_compile_options(options, asked->how);
   add_format_option(options, asked->format);
-  options.runs([asked] { test(*asked); });
+  add_quiet_option(options, asked->quiet, "say nothing about tests that pass");
+  options.runs([asked] {
+    refuse_quiet(asked->quiet && asked->format == Format::json, "--format json");
+    test(*asked);
+  });
 }
 
 }  // namespace robosync::tool

@@ -48,6 +48,7 @@ enum {
   ROBOSYNC_HERTZ = 9,
   ROBOSYNC_G = 12,
   ROBOSYNC_DECIBEL = 14,
+  ROBOSYNC_COUNT = 254,  // of a parameter: a number without decimals
   ROBOSYNC_AS_INPUT = 255
 };
 

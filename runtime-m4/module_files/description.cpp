@@ -122,7 +122,8 @@ void Description::judge(const Described& said) {
   if (words >= kMostWords) add_mistake("it has too many words");
   for (std::size_t i = 0; i < said.parameters; ++i) {
     judge_name("parameter", said.parameter_names[i]);
-    judge_unit("parameter", said.parameter_units[i], true);
+    if (said.parameter_units[i] != ROBOSYNC_COUNT)
+      judge_unit("parameter", said.parameter_units[i], true);
     const robosync_range& range = said.ranges[i];
     if (range.least > range.usual || range.usual > range.most)
       add_mistake("the usual value of its parameter " +

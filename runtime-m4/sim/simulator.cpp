@@ -25,20 +25,34 @@ public:
   explicit HeldValues(const kernel::Kernel& kernel) : kernel_(kernel) {}
 
   void hold(std::uint8_t channel, kernel::Time from, vm::Value value) {
-    values_[channel][from] = value;
+    values_[channel][from] = {value, false};
   }
 
   bool sample(const vm::Image&, std::uint8_t channel, vm::Value& value) override {
-    const auto& history = values_[channel];
+    auto& history = values_[channel];
     const auto after = history.upper_bound(kernel_.now());
     if (after == history.begin()) return false;
-    value = std::prev(after)->second;
+    Held& held = std::prev(after)->second;
+    held.sampled = true;
+    value = held.value;
     return value != vm::kUnknown;
   }
 
+  bool is_sampled(std::uint8_t channel, kernel::Time from) const {
+    const auto history = values_.find(channel);
+    if (history == values_.end()) return true;  // never held
+    const auto held = history->second.find(from);
+    return held == history->second.end() || held->second.sampled;
+  }
+
 private:
+  struct Held {
+    vm::Value value = vm::kUnknown;
+    bool sampled = false;
+  };
+
   const kernel::Kernel& kernel_;
-  std::map<std::uint8_t, std::map<kernel::Time, vm::Value>> values_;
+  std::map<std::uint8_t, std::map<kernel::Time, Held>> values_;
 };
 
 class Forwarder final : public EventSink {
@@ -133,6 +147,10 @@ void Simulator::feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value)
   } else {
     impl_->held.hold(channel, tick, value);
   }
+}
+
+bool Simulator::is_sampled(std::uint64_t at_us, std::uint8_t channel) const {
+  return impl_->held.is_sampled(channel, next_tick(at_us));
 }
 
 void Simulator::run_until(std::uint64_t until_us) {

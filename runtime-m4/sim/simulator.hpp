@@ -37,6 +37,9 @@ public:
   // now.
   void feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value);
 
+  // False for a feed of a sampled channel that no sample has measured so far.
+  bool is_sampled(std::uint64_t at_us, std::uint8_t channel) const;
+
   // Runs the robot until program time `until_us`, inclusive.
   void run_until(std::uint64_t until_us);
 

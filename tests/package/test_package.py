@@ -53,6 +53,15 @@ class Package(unittest.TestCase):
         self.assertEqual(completed, "upload\n")
         self.assertIn(".SS rsc upload", gzip.decompress((self.root / "usr/share/man/man1/rsc.1.gz").read_bytes()).decode())
 
+    def test_install_puts_the_tool_into_the_folder_that_is_named(self):
+        said = subprocess.run([ROOT / "scripts/install", "mine"], check=True, text=True, cwd=self.folder, stdout=subprocess.PIPE).stdout
+        rsc = self.folder / "mine/bin/rsc"
+        self.assertIn(f'export PATH="{rsc.parent}:$PATH"', said)
+        self.assertTrue(said.endswith(f"{rsc} is installed\n"))
+        self.assertTrue(self.run_it(rsc, "--version").startswith("rsc "))
+        wrong = subprocess.run([ROOT / "scripts/install", "--pefix"], check=False, stdout=subprocess.DEVNULL)
+        self.assertEqual(wrong.returncode, 2)
+
 
 if __name__ == "__main__":
     unittest.main()

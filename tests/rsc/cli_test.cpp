@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "rsc/verb.hpp"
+#include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
 
 using namespace robosync;
@@ -82,6 +83,65 @@ TEST_CASE("a misspelt verb or option gets a suggestion, and exit 2") {
   outcome = test::rsc({"help", "uplaod"});
   CHECK(outcome.exit == 2);
   CHECK_THAT(outcome.err, Contains("did you mean `upload`?"));
+}
+
+TEST_CASE("words of other tools are answered with what to write") {
+  struct Word {
+    std::vector<std::string> arguments;
+    const char* answer;
+  };
+  for (const auto& [arguments, answer] : std::vector<Word>{
+           {{"-c", "robot.rsl"}, "write `rsc compile FILE`"},
+           {{"-v"}, "write `rsc --version`"},
+           {{"build", "robot.rsl"}, "write `rsc compile FILE`"},
+           {{"robot.rsl"}, "write `rsc check robot.rsl` to look for mistakes, `rsc run robot.rsl`"},
+           {{"compile", "-c", "robot.rsl"}, "there is no option `-c`; write rsc compile FILE"},
+           {{"check", "robot.rsl", "--json"}, "; write --format json"},
+           {{"dump", "robot.rsl", "-Werror"}, "; write --deny warnings"},
+           {{"fmt", "-w", "robot.rsl"}, "rsc fmt rewrites the files"},
+           {{"run", "robot.rsl", "-d", "5s"}, "did you mean `--duration` or `--deny`?"},
+           {{"run", "robot.rsl", "--scen", "a.json"}, "did you mean `--scenario`?"},
+           {{"info", "--xyz"}, "there are --port, "},
+       }) {
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(arguments, outcome.err);
+    CHECK(outcome.exit == 2);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(answer));
+  }
+  // What does not go with the verb is not offered.
+  CHECK_THAT(test::rsc({"ports", "--sarif"}).err, !Contains("--format sarif"));
+}
+
+TEST_CASE("with --quiet a verb says nothing when all is well") {
+  const test::RobotFolder robot;
+  const std::string good =
+      robot.write("robot.rsl", "LET spare = 3\nAT START DO\n  LOG \"x\"\nEND\n");  // a warning
+  const std::string wrong = robot.write("wrong.rsl", "AT START DO\n  LGO \"x\"\nEND\n");
+  const std::string image = robot.path("robot.rsb");
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"check", "--quiet", good},
+                                             {"check", "-q", good},
+                                             {"compile", "-q", good, "-o", image},
+                                             {"fix", "-q", good},
+                                             {"fmt", "-q", good},
+                                             {"test", "-q", good}}) {
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(arguments, outcome.out, outcome.err);
+    CHECK(outcome.exit == 0);
+    CHECK(outcome.out.empty());
+    if (arguments.front() != "test") CHECK(outcome.err.empty());  // that there is no TEST
+  }
+  CHECK(std::filesystem::exists(image));
+  for (const char* const verb : {"check", "compile", "test"}) {
+    const Outcome outcome = test::rsc({verb, "-q", wrong});
+    CAPTURE(verb, outcome.out);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains("error["));
+    CHECK(outcome.out.empty());
+  }
+  CHECK(test::rsc({"check", "-q", "--timing", good}).exit == 2);
+  CHECK(test::rsc({"check", "-q", "--format", "json", good}).exit == 2);
 }
 
 TEST_CASE("wrong usage is exit 2 and says how it goes") {

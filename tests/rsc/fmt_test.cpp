@@ -40,6 +40,20 @@ TEST_CASE("--check changes nothing, and exits with 1 where something would") {
   CHECK(test::rsc({"fmt", "--check", folder.write("styled.rsl", kStyled)}).exit == 0);
 }
 
+TEST_CASE("a robot.json is formatted, too") {
+  const Folder folder;
+  const std::string plain = folder.write("robot.json", "{\"sensors\":[\n]}");
+  CHECK(test::rsc({"fmt", "--check", plain}).exit == 1);
+  CHECK(test::rsc({"fmt", plain}).out == plain + "\n");
+  CHECK(folder.read("robot.json") == "{\n  \"sensors\": []\n}\n");
+  const std::string wrong = folder.write("wrong.json", "{\"sensors\": [}\n");
+  const Outcome outcome = test::rsc({"fmt", wrong});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err,
+             Contains("error[E0201]") && Contains("1 error,") && Contains("it is unchanged"));
+  CHECK(folder.read("wrong.json") == "{\"sensors\": [}\n");
+}
+
 TEST_CASE("a program with a mistake stays as it is, and the others are written") {
   const Folder folder;
   const std::string wrong = folder.write("wrong.rsl", "WHEN touch LEVEL<\n");
@@ -75,6 +89,8 @@ TEST_CASE("- reads stdin and writes stdout") {
   };
   CHECK(piped(kPlain) == 0);
   CHECK(folder.read("out.rsl") == kStyled);
+  CHECK(piped("{\"name\":\"ada\"}") == 0);
+  CHECK(folder.read("out.rsl") == "{\n  \"name\": \"ada\"\n}\n");
   CHECK(piped("WHEN touch LEVEL<\n") == 1);
   CHECK(folder.read("out.rsl") == "WHEN touch LEVEL<\n");
   CHECK_THAT(folder.read("said"), Contains("<stdin>:1:"));

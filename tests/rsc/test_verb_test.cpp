@@ -238,6 +238,52 @@ TEST_CASE("a failing step is shown with what happened around it, and exit 1") {
                  Contains("ok      it moves\n") && Contains("1 passed, 1 failed\n"));
 }
 
+TEST_CASE("what must not happen is said with its time") {
+  const TestFolder robot(touched("still", "EXPECT NO MOVE left_arm WITHIN 1s"));
+  CHECK_THAT(test::rsc({"test", robot.program}).out,
+             Contains("    it came at 1.000 s: left_arm MOVE QUICKLY TO 90"));
+}
+
+TEST_CASE("a value that no sample of its sensor measures is pointed out") {
+  const Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "button", "type": "GPIO", "pin": 40, "device": "button",
+                 "channels": {"POSITION": {"rate": "50Hz"}}}],
+    "actuators": [{"name": "lamp", "type": "VIRTUAL"}]})");
+  const auto tested = [&](const std::string& steps, const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments{
+        "test", folder.write("robot.rsl",
+                             "WHEN button IS pressed\nDO LOG \"x\"\nEND\n"
+                             "TEST \"short\"\n  AT 0s button = \"released\"\n" +
+                                 steps + "END\n")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return test::rsc(arguments);
+  };
+  const std::string unseen =
+      "  AT 1005ms button = \"pressed\"\n  AT 1010ms button = \"released\"\n  EXPECT NO LOG \"x\" "
+      "WITHIN "
+      "1s\n";
+  Outcome outcome = tested(unseen);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out,
+             Contains("ok      short\n  --> ") &&
+                 Contains("6 |   AT 1005ms button = \"pressed\"\n") &&
+                 Contains("warning: the robot never sees this: button is sampled every 20 ms"));
+  CHECK_THAT(tested(unseen, {"-q"}).out, Contains("warning: the robot never sees this"));
+  const json report = json::parse(tested(unseen, {"--format", "json"}).out);
+  CHECK(report.at("tests").at(0).at("warnings").at(0).at("line") == 6);
+  CHECK_THAT(tested("  AT 1005ms button = \"pressed\"\n  AT 1030ms button = \"released\"\n"
+                    "  EXPECT NO LOG \"y\" WITHIN 1s\n")
+                 .out,
+             !Contains("warning"));
+  CHECK_THAT(tested("  AT 1005ms button = \"pressed\"\n  AT 1005ms button = \"released\"\n"
+                    "  EXPECT NO LOG \"x\" WITHIN 1s\n")
+                 .out,
+             !Contains("warning"));
+  // The test ends before the next sample.
+  CHECK_THAT(tested("  AT 1005ms button = \"pressed\"\n").out, Contains("never sees this"));
+}
+
 TEST_CASE("what came outside of its window is said with its time") {
   const TestFolder robot(touched("late", "WAIT 100ms\n  EXPECT MOVE arms WITHIN 1s"));
   CHECK_THAT(test::rsc({"test", robot.program}).out,

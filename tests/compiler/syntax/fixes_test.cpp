@@ -1,5 +1,6 @@
 // A fix that is certain shall give back what was meant: the examples get each of their words changed in turn, all such
-// fixes are made, and what comes out must do what the example does. Numbers are damaged as fingers do it, too.
+// fixes are made, and what comes out must do what the example does. Numbers are damaged as fingers do it, too. The same for
+// their robot.json.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/syntax/lexer.hpp"
 #include "tests/compiler/syntax/examples.hpp"
+#include "tests/compiler/syntax/mutations.hpp"
 #include "tests/support/share.hpp"
 #include "vm/image.hpp"
 
@@ -115,12 +117,13 @@ std::vector<Change> changes_of(const std::string& program) {
   return changes;
 }
 
-// With all fixes of the errors that are certain, from the last to the first; none that overlaps another.
-std::string fixed(const std::string& program, const Result& result) {
+// `program`, which is the text of `file`, with all fixes of the errors that are certain, from the last to the first; none that
+// overlaps another.
+std::string fixed(const std::string& program, const Result& result, FileId file = kProgramFile) {
   std::vector<Fix> fixes;
   for (const Diagnostic& diagnostic : result.diagnostics.all())
     for (const Fix& fix : diagnostic.fixes)
-      if (diagnostic.level == Level::error && fix.span.file == 0 &&
+      if (diagnostic.level == Level::error && fix.span.file == file &&
           fix.applicability == Applicability::certain)
         fixes.push_back(fix);
   std::ranges::sort(fixes, std::ranges::greater{}, [](const Fix& fix) { return fix.span.begin; });
@@ -169,6 +172,14 @@ FixTally try_fix(const Example& example, const Change& change,
   return tally;
 }
 
+void warn_of(const std::map<std::string, FixTally>& tallies) {
+  for (const auto& [kind, tally] : tallies)
+    WARN(kind << ": " << tally.programs << " changed programs, " << tally.wrong << " wrong, "
+              << tally.with_fix << " with a fix, which gives the example in " << tally.same
+              << ", a program that is wrong in " << tally.still_wrong << ", another one in "
+              << tally.other);
+}
+
 }  // namespace
 
 TEST_CASE("what a fix gives means what was meant", "[mutation]") {
@@ -188,11 +199,53 @@ TEST_CASE("what a fix gives means what was meant", "[mutation]") {
     }
   }
   tallies["all"] = total;
-  for (const auto& [kind, tally] : tallies)
-    WARN(kind << ": " << tally.programs << " changed programs, " << tally.wrong << " wrong, "
-              << tally.with_fix << " with a fix, which gives the example in " << tally.same
-              << ", a program that is wrong in " << tally.still_wrong << ", another one in "
-              << tally.other);
+  warn_of(tallies);
+  CHECK(total.with_fix >= robosync::test::share_of(300U));
+  CHECK(total.same == total.with_fix);
+}
+
+namespace {
+
+FixTally try_fix_of_robot(const Example& example, const std::string& robot,
+                          const std::vector<std::byte>& meant) {
+  FixTally tally{.programs = 1};
+  const Result result = compiled(example.program, robot);
+  if (result.diagnostics.errors() == 0) return tally;
+  tally.wrong = 1;
+  const std::string program = fixed(example.program, result);
+  const std::string mended = fixed(robot, result, kConfigurationFile);
+  if (program == example.program && mended == robot) return tally;
+  tally.with_fix = 1;
+  Result again = compiled(program, mended);
+  const bool wrong = again.image.empty();
+  if (!wrong && meaning(std::move(again.image)) == meant) {
+    tally.same = 1;
+    return tally;
+  }
+  (wrong ? tally.still_wrong : tally.other) = 1;
+  WARN(example.name << ":\n" << render_human(result.diagnostics, result.sources, false));
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("what a fix of a robot.json gives means what was meant", "[mutation]") {
+  const int rounds = robosync::test::share_of(20);  // of each mutation, for each example
+  std::mt19937 random(20230602);
+  std::map<std::string, FixTally> tallies;
+  FixTally total;
+  for (const Example& example : examples()) {
+    const std::vector<std::byte> meant = meaning(compiled(example.program, example.robot).image);
+    for (const Mutation mutation : every_mutation)
+      for (int round = 0; round < rounds; ++round) {
+        const FixTally tried =
+            try_fix_of_robot(example, mutate_json(example.robot, mutation, random), meant);
+        tallies[name_of(mutation)] += tried;
+        total += tried;
+      }
+  }
+  tallies["all"] = total;
+  warn_of(tallies);
   CHECK(total.with_fix >= robosync::test::share_of(300U));
   CHECK(total.same == total.with_fix);
 }
@@ -227,11 +280,27 @@ TEST_CASE("a fix is certain only where nothing else can be meant") {
         std::string("AT START DO\n  SHOW face tick\nEND\n"),  // PICK
         std::string("AT START DO\n  MOVE the head TO 30deg\nEND\n"),
         std::string("REMEMBER n = 0\nAT START DO\n  ADD 1 TO n\nEND\n"),
-        std::string("AT START DO\n  SAY 'It's nice'\nEND\n")}) {
+        std::string("AT START DO\n  SAY 'It's nice'\nEND\n"),
+        "WHEN wave_detect SEEN IS NOT FALSE" + rest,  // NOT is too much
+        "WHEN touch LEVEL > 3 AND (touch LEVEL < 5 OR wave_detect))" +
+            rest,  // or a bracket is missing
+        std::string("WHEN hand hand LEVEL > 3 DO\n  LOG \"x\"\nEND\n")}) {  // AND
+
     const Result result = compiled(program, robot);
     CAPTURE(program, render_human(result.diagnostics, result.sources, false));
     CHECK(result.diagnostics.errors() == 1);
     CHECK(fixed(program, result) == program);
+  }
+  for (
+      const char* const from_json : {
+          R"({"actuators": [{"name": "left_arm", "type": "VIRTUAL", "device": "joint", "range": ["0deg",]}]})",
+          R"({"actuators": [{"name": "left_arm", "type" "device": "joint"}]})",
+          R"({"sensors": [{"name""touch" :, "type": "VIRTUAL"}]})",
+      }) {
+    const Result result = compiled("AT START DO\n  LOG \"x\"\nEND\n", from_json);
+    CAPTURE(from_json, render_human(result.diagnostics, result.sources, false));
+    CHECK(result.diagnostics.errors() == 1);
+    CHECK(fixed(from_json, result, kConfigurationFile) == from_json);
   }
   const std::string twice = "WHEN WHEN touch LEVEL > 3" + rest;
   CHECK(compiled(fixed(twice, compiled(twice, robot)), robot).diagnostics.errors() == 0);

@@ -245,4 +245,11 @@ TEST_CASE("formatting gives what rsc fmt writes, as a change of whole lines") {
   CHECK(editor.ask("textDocument/formatting", params).empty());
   editor.write("robot.rsl", "WHEN touch <\n");
   CHECK(editor.ask("textDocument/formatting", params).is_null());
+  editor.open("other.json", "{\"name\":\"ada\"}\n");
+  const Json of_json = {{"textDocument", {{"uri", editor.uri("other.json")}}}};
+  editor.apply("other.json", editor.ask("textDocument/formatting", of_json));
+  CHECK(editor.server().workspace().find(editor.uri("other.json"))->source.text() ==
+        "{\n  \"name\": \"ada\"\n}\n");
+  editor.write("other.json", "{\"name\":\n");
+  CHECK(editor.ask("textDocument/formatting", of_json).is_null());
 }

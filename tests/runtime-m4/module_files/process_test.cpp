@@ -239,6 +239,9 @@ TEST_CASE("each thing that a module says of itself is looked at") {
         }).starts_with("its output FIRM has a unit that is none"));
   CHECK(mistake_of([](Said& said) { said.parameter_units[0] = 200; }) ==
         "its parameter has a unit that is none: 200");
+  CHECK(mistake_of([](Said& said) { said.parameter_units[0] = ROBOSYNC_COUNT; }) == "");
+  CHECK(mistake_of([](Said& said) { said.input_units[0] = ROBOSYNC_COUNT; }) ==
+        "its input has a unit that is none: 254");
   CHECK(mistake_of([](Said& said) { said.output[0].words = 0, said.output[0].most = 0; }) ==
         "the range of its output FIRM is empty");
   CHECK(mistake_of([](Said& said) { said.output[0].unit = ROBOSYNC_NUMBER + 1; }) == step);
