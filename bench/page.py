@@ -71,7 +71,7 @@ Firmware:
   8,000 to 15,000, depending on how often the host sends requests meanwhile.
 * `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those
   alone.
-* `ear/block` is the work for 20 ms of sound at the most expensive pitch, on a board that had a microphone.
+* `ear/block` is the work for 20 ms of sound at the most expensive pitch, on the micro:bit V2.
 
 Safety and link:
 

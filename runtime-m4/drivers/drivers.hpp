@@ -94,7 +94,8 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights, speakers and microphones is left out if the board has none; code for displays, players and panels if they cannot be connected.
+// Code for lights, speakers and microphones is left out if the board has none; code for displays, players and panels if they
+// cannot be connected.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::is_microphone(id)) return boards::kHasMicrophone;
   if (vm::drives_lights(id)) return boards::kHasLights;
