@@ -346,8 +346,13 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
     mend(mistake, c == '=' ? here : span(wrong.before + 1, wrong.before + 1), ":", d);
   } else if (mistake.open_span && ends_value(wrong.previous) &&
              (c == '"' || c == '{' || c == '[') && wrong.before + 1 == mistake.good_until) {
-    mend(mistake, span(wrong.before + 1, wrong.before + 1), ",",
-         diagnostics.report(Code::E0201, "a comma is missing before this").label(here));
+    Diagnostic& d = diagnostics.report(Code::E0201, "a comma is missing before this").label(here);
+    const Span place = span(wrong.before + 1, wrong.before + 1);
+    // After a number, a digit may have taken the comma's place.
+    if (ascii::is_digit(wrong.previous))
+      d.fix(place, ",", Applicability::likely);
+    else
+      mend(mistake, place, ",", d);
   } else {
     diagnostics.report(Code::E0201, describe_character(mistake, wrong)).label(here);
   }

@@ -191,10 +191,8 @@ void OutputGuard::begin_with(Mask halted) {
   halted_ = halted;
 }
 
-void OutputGuard::own(const vm::Image& image) {
-  const Mask sounding = switch_off(&image);
-  const Slot player = slots_[static_cast<unsigned>(std::countr_zero(sounding)) % slots_.size()];
-  if (boards::kHasPanel) free_panel_pin(image);
+// All but those on chips and displays.
+OutputGuard::Mask OutputGuard::own_actuators(const vm::Image& image) {
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
   Mask owned = 0;
@@ -216,6 +214,14 @@ void OutputGuard::own(const vm::Image& image) {
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
     if (slots_[a].safe == kStays) apart_ |= bit(a);
   }
+  return owned;
+}
+
+void OutputGuard::own(const vm::Image& image) {
+  const Mask sounding = switch_off(&image);
+  const Slot player = slots_[static_cast<unsigned>(std::countr_zero(sounding)) % slots_.size()];
+  if (boards::kHasPanel) free_panel_pin(image);
+  Mask owned = own_actuators(image);
   own_chips(image);
   own_displays(image);
   owned |= on_chips_;

@@ -185,6 +185,7 @@ private:
   void listen(bool on);
   [[nodiscard]] Mask switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
+  [[nodiscard]] Mask own_actuators(const vm::Image& image);
   void own_chips(const vm::Image& image);
   void own_displays(const vm::Image& image);
   // Null if the sensor is no servo chip.

@@ -126,17 +126,21 @@ TEST_CASE("two commands to one actuator run one after the other") {
 }
 
 TEST_CASE("eight commands wait for an actuator, more are dropped, which is said once a response") {
-  std::string program = "WHEN near X > 10\nDO\n";
-  for (int i = 1; i <= 10; ++i)
-    program += "MOVE a FOR " + std::to_string(i) + "ms\n";
-  // There are enough places for all of them; each actuator has its own.
-  Robot robot(program + "MOVE b FOR 7ms\nEND\n");
+  const auto moves = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+      text += "MOVE a FOR 10ms\n";
+    return text;
+  };
+  // The first one is under way, so there is room for one of three.
+  Robot robot("WHEN near X > 10\nDO\n" + moves(8) + "WAIT 5ms\n" + moves(3) +
+              "MOVE b FOR 7ms\nEND\n");
   robot.feed(0, "X", 20);
   robot.run(200);
-  CHECK(robot.only("overrun") == "0 #1 overrun a\n");
+  CHECK(robot.only("overrun") == "5 #2 overrun a\n");
   CHECK_THAT(robot.only("done"),
-             Catch::StartsWith("1 #1 done a\n") && Catch::Contains("7 #1 done b\n"));
-  CHECK(robot.only("finished") == "36 #1 finished r0\n");
+             Catch::StartsWith("10 #2 done a\n") && Catch::Contains("12 #2 done b\n"));
+  CHECK(robot.only("finished") == "90 #2 finished r0\n");
 }
 
 TEST_CASE("commands that are done at once, and the queue behind them") {
