@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 11;
+inline constexpr std::uint8_t kProtocolVersion = 12;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -187,6 +187,21 @@ struct Devices {
   std::uint8_t held;  // bit b: a line of bus b is held low, so that no device on it can answer
   std::uint8_t reserved;
   std::array<std::uint16_t, 32> failed;  // by sensor: failed transfers; saturates at 65535
+};
+
+struct GetState {
+  std::uint32_t first;  // the values from this one on: the program's channels, then its variables
+};
+
+// Of the running program, now.
+struct State {
+  std::uint64_t program_us;              // since activation
+  std::array<std::uint32_t, 8> tripped;  // bit r % 32 of word r / 32: SAFETY rule r is tripped
+  std::uint32_t halted;                  // bit a: SAFETY or a person halts actuator a
+  std::uint8_t count;                    // of values
+  std::uint8_t stopped;                  // 1: a person has stopped the robot
+  std::array<std::uint8_t, 2> reserved;
+  std::array<std::int32_t, 32> values;  // thousandths; -2147483648: unknown
 };
 
 enum class Keeping : std::uint8_t {

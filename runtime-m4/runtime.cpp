@@ -256,6 +256,18 @@ void Runtime::fill_devices(link::Devices& devices) const {
   if (running_) sensors_.fill_devices(devices);
 }
 
+void Runtime::fill_state(link::State& state, std::uint32_t first) const {
+  state.stopped = stopped_ ? 1 : 0;
+  if (!running_) return;
+  const vm::Image& image = shared_.program.image;
+  state.program_us = trace_.program_time();
+  safety_rules_.fill_tripped_now(state.tripped);
+  state.halted = control_.halted();
+  const std::size_t inputs = image.channels.size() + image.variables.size();
+  for (std::size_t i = first; i < inputs && state.count < state.values.size(); ++i)
+    state.values[state.count++] = shared_.processing.snapshot().value(static_cast<std::uint8_t>(i));
+}
+
 std::size_t Runtime::fill_kept(std::span<layers::KeptNumber, vm::kMaxKept> kept) const {
   if (!running_) return 0;
   const vm::Image& image = shared_.program.image;

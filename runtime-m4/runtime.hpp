@@ -96,6 +96,8 @@ public:
   // Fills in everything except bad_frames and lost_events, which only the link knows.
   void fill_status(link::Status& status) const;
   void fill_devices(link::Devices& devices) const;
+  // The values from input `first` on.
+  void fill_state(link::State& state, std::uint32_t first) const;
   bool running() const override { return running_; }
   const vm::Image& image() const { return shared_.program.image; }  // of the running program
   const vm::Limits& limits() const { return limits_; }

@@ -74,6 +74,21 @@ std::vector<Board::Part> read_parts(const json::Value& value, Diagnostics& diagn
   return parts;
 }
 
+// [{"bus": 0, "address": "0x50", "for": "the EEPROM"}, …]
+std::vector<Board::Reserved> read_reserved(const json::Value& list, Diagnostics& diagnostics) {
+  constexpr std::string_view kWhat = "a reserved address";
+  std::vector<Board::Reserved> reserved;
+  if (!expect_kind(list, json::Kind::array, diagnostics)) return reserved;
+  for (const json::Value& entry : list.items) {
+    Fields fields(entry, Object::reserved, diagnostics);
+    const auto bus = static_cast<std::uint8_t>(read_number(fields, "bus", kWhat, diagnostics));
+    const auto address =
+        static_cast<std::uint16_t>(read_number(fields, "address", kWhat, diagnostics));
+    reserved.push_back({bus, address, require_text(fields, "for", kWhat, diagnostics)});
+  }
+  return reserved;
+}
+
 Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
   constexpr std::string_view kWhat = "flash";
   Fields fields(value, Object::flash, diagnostics);
@@ -119,6 +134,12 @@ bool Board::has_panel(std::uint16_t pin) const {
   return is_in(panels, pin);
 }
 
+const Board::Reserved* Board::find_reserved(std::uint8_t bus, std::uint16_t address) const {
+  const auto found = std::ranges::find_if(
+      reserved, [&](const Reserved& one) { return one.bus == bus && one.address == address; });
+  return found == reserved.end() ? nullptr : &*found;
+}
+
 const Board::Part* Board::find_part(std::string_view wanted) const {
   const auto found =
       std::ranges::find_if(parts, [&](const Part& part) { return same_name(part.name, wanted); });
@@ -146,6 +167,8 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
     board.enables = read_pins(*enables, Object::inputs, diagnostics);
   if (const auto* panels = fields.find("panels"))
     board.panels = read_pins(*panels, Object::inputs, diagnostics);
+  if (const auto* reserved = fields.find("reserved"))
+    board.reserved = read_reserved(*reserved, diagnostics);
   if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);
   if (const auto* flash = fields.find("flash")) board.flash = read_flash(*flash, diagnostics);
   const auto* arena = fields.require("arena", "a board");

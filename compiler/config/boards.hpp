@@ -30,12 +30,18 @@ struct Board {
     std::uint16_t first, last;
     bool power = true;  // of outputs: false if they give pulses for servos only
   };
-  std::vector<Pins> outputs;       // pins that a program may drive
-  std::vector<Pins> inputs;        // … and read; no pin is both
-  std::vector<Pins> analog;        // pins whose voltage it may read; one may also be an output
-  std::vector<Pins> enables;       // for the enable inputs of chips
-  std::vector<Pins> panels;        // outputs that can drive a panel of lights
-  std::uint32_t i2c_buses = 0;     // numbered from 0
+  std::vector<Pins> outputs;    // pins that a program may drive
+  std::vector<Pins> inputs;     // … and read; no pin is both
+  std::vector<Pins> analog;     // pins whose voltage it may read; one may also be an output
+  std::vector<Pins> enables;    // for the enable inputs of chips
+  std::vector<Pins> panels;     // outputs that can drive a panel of lights
+  std::uint32_t i2c_buses = 0;  // numbered from 0
+  struct Reserved {             // an address on one of them that no program may use
+    std::uint8_t bus;
+    std::uint16_t address;
+    std::string used_for;
+  };
+  std::vector<Reserved> reserved;
   std::uint32_t serial_lines = 0;  // for sound players, from vm::kFirstPlayerLine on
   // How to flash its firmware. nullopt: this board exists only in an emulator.
   struct Flash {
@@ -65,6 +71,8 @@ struct Board {
   [[nodiscard]] bool has_analog(std::uint16_t pin) const;
   [[nodiscard]] bool has_enable(std::uint16_t pin) const;
   [[nodiscard]] bool has_panel(std::uint16_t pin) const;
+  // Null if programs may use it.
+  [[nodiscard]] const Reserved* find_reserved(std::uint8_t bus, std::uint16_t address) const;
   [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case
 };
 

@@ -30,6 +30,7 @@ enum class Object : std::uint8_t {
   board,
   arena,
   outputs,
+  reserved,
   inputs,
   part,
   flash,

@@ -230,7 +230,10 @@ void place_channels(SensorConfig& sensor) {
 
 void check_place(const Fields& fields, const SensorConfig& sensor, const Board::Part* part,
                  WiringReader& wiring, const Wiring& place) {
-  if (vm::is_on_i2c(sensor.driver)) wiring.check_bus(fields, place);
+  if (vm::is_on_i2c(sensor.driver)) {
+    wiring.check_bus(fields, place);
+    wiring.check_address(fields, place);
+  }
   if (vm::is_on_pin(sensor.driver)) wiring.check_input(fields, place);
   if (vm::is_by_echo(sensor.driver)) wiring.check_echo(fields, place);
   if (vm::is_analog(sensor.driver)) wiring.check_analog(fields, place);
@@ -270,6 +273,27 @@ void check_rate(const json::Value* channels, SensorConfig& sensor, Diagnostics& 
             .helps(fmt::format("use a rate of at most {}Hz", 1000 / shortest));
 }
 
+// A reading that becomes unknown before the next one comes would be unknown again and again.
+void check_stale_after(const json::Value* channels, const SensorConfig& sensor,
+                       Diagnostics& diagnostics) {
+  if (channels == nullptr) return;
+  for (std::size_t c = 0; c < channels->members.size() && c < sensor.channels.size(); ++c) {
+    const ChannelConfig& channel = sensor.channels[c];
+    if (channel.stale_ms == 0 || channel.stale_ms >= channel.period_ms) continue;
+    for (const json::Member& key : channels->members[c].value.members)
+      if (key.key == "stale_after")
+        diagnostics
+            .report(Code::E0205,
+                    fmt::format("a reading would become unknown after {} ms, but this is measured "
+                                "every {} ms",
+                                channel.stale_ms, channel.period_ms))
+            .label(key.value.span)
+            .helps(fmt::format("use a `stale_after` of at least {}ms, twice the time between two "
+                               "readings, or a faster `rate`",
+                               2 * channel.period_ms));
+  }
+}
+
 }  // namespace
 
 std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& wiring,
@@ -302,6 +326,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
     if (channel.period_ms != 0 && (sensor.period_ms == 0 || channel.period_ms < sensor.period_ms))
       sensor.period_ms = channel.period_ms;
   check_rate(channels, sensor, diagnostics);
+  check_stale_after(channels, sensor, diagnostics);
   return sensor;
 }
 

@@ -258,6 +258,7 @@ ChipWiring WiringReader::read_chip(Fields& fields) {
     return wiring;
   }
   chip.address = static_cast<std::uint16_t>(*place);
+  check_address(fields, {chip.bus, chip.address});
   chip.enable = static_cast<std::uint8_t>(*pin);
   wiring.channel = static_cast<std::uint16_t>(*output);
   take_chip(chip, *address, *enable);
@@ -452,6 +453,20 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
     read_pins(fields, two_pins, what, wiring);
   }
   return wiring;
+}
+
+void WiringReader::check_address(const Fields& fields, const Wiring& wiring) {
+  const Board::Reserved* const reserved = board_.find_reserved(wiring.bus, wiring.place);
+  const auto* const address = fields.find("address");
+  if (reserved == nullptr || address == nullptr) return;
+  const auto* const name = fields.find("name");
+  diagnostics_
+      .report(Code::E0207,
+              fmt::format("{} cannot have address 0x{:02x} on bus {}: {} of the board {} has it",
+                          name != nullptr && !name->text.empty() ? "`" + name->text + "`" : "this",
+                          wiring.place, wiring.bus, reserved->used_for, board_.name))
+      .label(address->span)
+      .helps("give it another address; many parts have pins or solder bridges for that");
 }
 
 void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {

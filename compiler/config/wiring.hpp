@@ -55,6 +55,8 @@ public:
   void check_safe(const ServoChip& chip, vm::Release safe, Span span);
   // For drivers that use them: checks that the board has them.
   void check_bus(const Fields& fields, const Wiring& wiring);
+  // Of a device on I2C: no part of the board has its address for itself.
+  void check_address(const Fields& fields, const Wiring& wiring);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_echo(const Fields& fields, const Wiring& wiring);
   void check_analog(const Fields& fields, const Wiring& wiring);

@@ -75,7 +75,6 @@ void Bridge::online(bool is) {
 void Bridge::board(const link::HelloReply& board, const Past& past,
                    const std::vector<OnBus>& silent) {
   publish("board", introduction_json(board, past, silent), true);
-  stopped(board.stopped != 0);
 }
 
 void Bridge::stopped(bool is) {
@@ -88,6 +87,12 @@ void Bridge::program(const TraceNames& names, std::span<const std::byte>) {
     mqtt_.forget(root_ + topic);
   of_program_.clear();
   publish(kProgram, {{"event", "program"}, {"program", program_json(image_)}}, true);
+}
+
+void Bridge::current(const Current& current, const TraceNames& names) {
+  stopped(current.stopped);
+  for (const link::Event& one : current.events)
+    event(one, names);
 }
 
 void Bridge::event(const link::Event& event, const TraceNames& names) {

@@ -254,6 +254,7 @@ void Client::reopen(const Message& busy, bool& tried) {
     link::Hello taking = introduction_;
     taking.take = 1;
     (void)hello_answer(send(MessageType::hello, link::wire_bytes(taking)));
+    if (traces_) set_trace(true);
     return;
   }
   if (tried) {
@@ -264,6 +265,7 @@ void Client::reopen(const Message& busy, bool& tried) {
   }
   tried = true;
   (void)hello();
+  if (traces_) set_trace(true);
 }
 
 std::uint8_t Client::send_hello() {
@@ -317,6 +319,11 @@ link::Fault Client::last_fault() {
 
 link::Devices Client::devices() {
   return request<link::Devices>(MessageType::get_devices, MessageType::devices);
+}
+
+link::State Client::state(std::uint32_t first) {
+  return request<link::State>(MessageType::get_state, MessageType::state,
+                              link::wire_bytes(link::GetState{first}));
 }
 
 link::Status Client::clear(const link::ProgramHash& program) {
@@ -386,6 +393,7 @@ void Client::order_upload(std::span<const std::byte> begin, std::span<const std:
 }
 
 link::Status Client::set_trace(bool on) {
+  traces_ = on;
   const link::TraceOn wish{static_cast<std::uint8_t>(on)};
   return request<link::Status>(MessageType::trace_on, MessageType::status, link::wire_bytes(wish));
 }

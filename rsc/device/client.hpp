@@ -37,6 +37,8 @@ public:
   link::Status status();
   link::Fault last_fault();  // the latest one that the board has kept; no thread: none
   link::Devices devices();   // on the buses of the running program
+  // What holds in the running program, with the values from input `first` on.
+  link::State state(std::uint32_t first);
   link::Status clear(const link::ProgramHash& program);  // ends the program, if it runs
   link::Kept kept();
   // Only asks for it: the board then reads its store.
@@ -74,7 +76,7 @@ public:
   std::uint8_t send(link::MessageType type, std::span<const std::byte> payload = {});
   // The next reply. Events, logs and faults that arrive meanwhile are queued for next_unasked().
   std::optional<Message> next_reply(Milliseconds timeout);
-  // Handles the reply `busy`, once for each request: says hello, because the board may have restarted, or the host that had the
+  // Handles the reply `busy`, once for each request: says hello (and switches the trace on again, which a hello ends), because the board may have restarted, or the host that had the
   // line may be idle. If the board is still busy with a process of this computer that does not exist any more (host_name.hpp),
   // the line is taken over, once: a user who interrupts an upload may start another at once. Otherwise throws Refused: the board
   // gives the line free when nothing has come from its host for three seconds.
@@ -118,6 +120,7 @@ private:
   std::optional<Transport::Clock::time_point> heard_;  // when the last valid frame came
   std::size_t stray_bytes_ = 0;                        // that came after it
   std::uint8_t sequence_ = 0;
+  bool traces_ = false;  // the trace is wanted; each hello ends it
   std::deque<Message> replies_;
   std::deque<Message> unasked_;
 };

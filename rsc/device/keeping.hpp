@@ -1,6 +1,7 @@
 // Which programs a board keeps through a reset: in `rsc info`, after `rsc upload`, and for `rsc rollback`.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -24,6 +25,8 @@ namespace robosync::tool {
 
 // Waits until the trial of the running program is over.
 [[nodiscard]] link::Kept after_trial(Client& client);
+// Waits until the running program's SAFETY rules have been evaluated for the first time, if that is soon.
+[[nodiscard]] link::Kept after_first_look(Client& client, std::uint32_t safety_start_ms);
 // Throws Failure (program) if the board keeps no program to return to after a trial.
 void expect_kept_program(Client& client);
 

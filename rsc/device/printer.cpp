@@ -38,6 +38,19 @@ void Printer::board(const link::HelloReply& board, const Past& past,
   std::cout.flush();
 }
 
+void Printer::current(const Current& current, const TraceNames& names) {
+  const std::vector<Held> held = held_back(current, names);
+  if (held.empty()) return;
+  if (format_ == Format::json) {
+    Json line{{"event", "state"}};
+    line.update(current_json(current, names));
+    return print(line);
+  }
+  for (const Held& one : held)
+    std::cout << fmt::format("{:>13}  {}\n", one.what, one.text);
+  std::cout.flush();
+}
+
 void Printer::event(const link::Event& event, const TraceNames& names) {
   std::cout << (format_ == Format::json ? trace_json(event, names) : trace_line(event, names))
             << std::endl;

@@ -19,6 +19,14 @@ using std::chrono::milliseconds;
 namespace {
 using Json = nlohmann::ordered_json;
 constexpr double kBitsPerByte = 10;  // 8N1
+
+// A SAFETY rule over what nobody has fed trips as soon as the program begins: wait for that.
+link::Kept after_start(Session& session, const Program& program) {
+  const vm::Image& image = program.image();
+  return image.has_safety() ? after_first_look(session.client, image.header->safety_start_ms)
+                            : session.client.kept();
+}
+
 }  // namespace
 
 double ms_of(const UploadResult& result) {
@@ -72,7 +80,7 @@ Uploaded upload_to(const std::string& port, const Program& program, const SendOp
   know_image(port, without_source_lines(program));
   try {
     uploaded.silent = silent_after_start(session.client, program.image());
-    uploaded.kept = options.trial ? after_trial(session.client) : session.client.kept();
+    uploaded.kept = options.trial ? after_trial(session.client) : after_start(session, program);
   } catch (const Failure& failure) {
     throw Failure(failure.exit(),
                   followed_by(failure.what(),

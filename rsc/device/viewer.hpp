@@ -8,6 +8,7 @@
 
 #include "link/events.hpp"
 #include "link/messages.hpp"
+#include "rsc/device/current.hpp"
 #include "rsc/device/devices.hpp"
 #include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"
@@ -27,6 +28,8 @@ public:
   // Called first, and after each restart of the board; `silent`: the devices on its buses that do not answer.
   virtual void board(const link::HelloReply& /*board*/, const Past& /*past*/,
                      const std::vector<OnBus>& /*silent*/) {}
+  // After that, and whenever events were missed: what holds now.
+  virtual void current(const Current& /*current*/, const TraceNames& /*names*/) {}
   // What the numbers in events mean from here on; both stay valid until the next call. `image`: empty if no program runs.
   virtual void program(const TraceNames& /*names*/, std::span<const std::byte> /*image*/) {}
   virtual void event(const link::Event& /*event*/, const TraceNames& /*names*/) {}

@@ -81,6 +81,7 @@ void Watch::introduce() {
   if (past.owner.pairing == link::Pairing::paired) past.owner = session_->client.authority();
   for (Viewer* const viewer : viewers_)
     viewer->board(session_->board, past, silent);
+  tell_current();
 }
 
 bool Watch::goes_on() {
@@ -183,6 +184,13 @@ void Watch::tell_event(const Message& message) {
     viewer->event(event, names_);
 }
 
+// The trace is on already, so nothing that happens after the answer is missed.
+void Watch::tell_current() {
+  const Current current = current_of(session_->client, names_.image);
+  for (Viewer* const viewer : viewers_)
+    viewer->current(current, names_);
+}
+
 void Watch::tell_threads() {
   const std::vector<link::ThreadInfo> now = session_->client.threads();
   for (Viewer* const viewer : viewers_)
@@ -243,6 +251,7 @@ bool Watch::lend() {
                   "meanwhile is not shown",
                   std::chrono::duration<double>(Clock::now() - lent).count(),
                   image_bytes_ == before ? "" : ", and another program runs"));
+  tell_current();
   look(status);
   return true;
 }

@@ -25,8 +25,8 @@ public:
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
-  // Tells the viewers which board it is, why it started, its last fault, and which
-  // devices do not answer.
+  // Tells the viewers which board it is, why it started, its last fault, which
+  // devices do not answer, and what is tripped, halted and known now.
   void introduce();
   // Runs until the duration is over, the user interrupts (Ctrl-C), or a viewer is
   // done. Meanwhile it lends the line to another rsc that wants it, and looks for a
@@ -44,6 +44,7 @@ private:
   bool step();
   void tell(const Message& message);
   void tell_event(const Message& message);
+  void tell_current();
   void tell_threads();
   void look(const link::Status& status);
   void remember(const link::Status& status);

@@ -100,12 +100,26 @@ std::optional<std::size_t> Model::behavior_of(std::size_t rule) const {
   return std::nullopt;
 }
 
+// Replaces what earlier events have told of it.
+void Model::current(const Current& current, const TraceNames& names) {
+  stopped_ = current.stopped;
+  trips_.clear();
+  for (ActuatorRow& row : actuators_)
+    row.halted = false;
+  for (const link::Event& event : current.events)
+    see(event, names);
+}
+
 void Model::event(const link::Event& event, const TraceNames& names) {
   now_us_ = std::max(now_us_, event.time_us);
   const std::string words = trace_line(event, names);
   if (event.kind != EventKind::input && event.kind != EventKind::set) keep(log_, words, kMaxLog);
   if (event.kind == EventKind::alert || event.kind == EventKind::fault)
     keep(alerts_, words, kMaxAlerts);
+  see(event, names);
+}
+
+void Model::see(const link::Event& event, const TraceNames& names) {
   if (image_ == nullptr) return;
   const EventReader reader(event, names);
   switch (reader.shape().subject) {
@@ -168,6 +182,7 @@ void Model::see_rule(const link::Event& event, const TraceNames& names) {
       is_denied(event, names);
       break;
     case EventKind::trip:
+      std::erase(trips_, reader.rule_name());  // current() may have told it already
       trips_.push_back(reader.rule_name());
       break;
     case EventKind::resume:

@@ -44,6 +44,7 @@ public:
 
   void board(const link::HelloReply& board, const Past& past, const std::vector<OnBus>& silent);
   void program(const TraceNames& names, std::span<const std::byte> image);
+  void current(const Current& current, const TraceNames& names);
   void event(const link::Event& event, const TraceNames& names);
   void threads(ThreadList now, ThreadList before);
   void status(const link::Status& status);
@@ -69,6 +70,7 @@ public:
 
 private:
   void add_rows();
+  void see(const link::Event& event, const TraceNames& names);
   void see_value(const link::Event& event, const TraceNames& names);
   void see_rule(const link::Event& event, const TraceNames& names);
   void see_actuator(const link::Event& event, const TraceNames& names);

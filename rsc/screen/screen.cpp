@@ -38,6 +38,10 @@ void Screen::program(const TraceNames& names, std::span<const std::byte> image) 
   model_.program(names, image);
 }
 
+void Screen::current(const Current& current, const TraceNames& names) {
+  model_.current(current, names);
+}
+
 void Screen::event(const link::Event& event, const TraceNames& names) {
   model_.event(event, names);
 }

@@ -21,6 +21,7 @@ public:
   void board(const link::HelloReply& board, const Past& past,
              const std::vector<OnBus>& silent) override;
   void program(const TraceNames& names, std::span<const std::byte> image) override;
+  void current(const Current& current, const TraceNames& names) override;
   void event(const link::Event& event, const TraceNames& names) override;
   void log(const std::string& text) override;
   void fault(const link::Fault& fault) override;

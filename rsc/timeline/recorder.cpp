@@ -45,6 +45,22 @@ Json labels_of(const vm::Image& image, std::size_t first, std::size_t count) {
   return labels;
 }
 
+// A position, a power or a picture stays when its command is done, except with FOR. Power 0 is nothing.
+bool has_lasting_effect(const link::Event& event, const TraceNames& names) {
+  const EventReader reader(event, names);
+  if (names.image == nullptr || event.object >= names.image->verbs.size()) return false;
+  const vm::Action action = names.image->verbs[event.object].action;
+  if (action != vm::Action::set && action != vm::Action::move && action != vm::Action::follow)
+    return false;
+  bool lasts = true;
+  reader.for_each_param([&](std::size_t param, vm::Value value) {
+    const auto which = static_cast<vm::Param>(param);
+    if (which == vm::Param::for_) lasts = false;
+    if (action == vm::Action::set && which == vm::Param::to && value == 0) lasts = false;
+  });
+  return lasts;
+}
+
 // Events shown as messages.
 bool is_message(EventKind kind) {
   switch (kind) {
@@ -70,7 +86,8 @@ TimelineRecorder::TimelineRecorder(const Program& program, const TraceNames& nam
       names_(names),
       owners_(image_.actuators.size()),
       moves_(image_.actuators.size()),
-      halted_(image_.actuators.size()) {
+      halted_(image_.actuators.size()),
+      lasts_(image_.actuators.size()) {
   page_["begin_us"] = 0;
   for (const char* list : {"behaviors", "signals", "actuators", "safety", "denied", "messages"})
     page_[list] = Json::array();
@@ -211,15 +228,17 @@ void TimelineRecorder::see_actuator(const link::Event& event) {
   const std::size_t actuator = event.subject;
   switch (event.kind) {
     case EventKind::command:
-      end_bar(actuator, event.time_us);
+      end_state(actuator, event.time_us);
       begin_bar(event);
       break;
     case EventKind::done:
-    case EventKind::cancel:
       end_bar(actuator, event.time_us);
       break;
+    case EventKind::cancel:
+      end_state(actuator, event.time_us);
+      break;
     case EventKind::halt:
-      end_bar(actuator, event.time_us);
+      end_state(actuator, event.time_us);
       end_halt(actuator, event.time_us);
       halted_[actuator] = true;
       page_["actuators"][actuator]["halts"].push_back({event.time_us, nullptr});
@@ -245,11 +264,19 @@ void TimelineRecorder::begin_bar(const link::Event& event) {
                                                        {"rule", rule ? Json(*rule) : Json(nullptr)},
                                                        {"step", event.step}});
   moves_[event.subject] = true;
+  lasts_[event.subject] = has_lasting_effect(event, names_);
 }
 
 void TimelineRecorder::end_bar(std::size_t actuator, std::uint64_t at) {
   if (moves_[actuator]) page_["actuators"][actuator]["bars"].back()["to"] = at;
   moves_[actuator] = false;
+}
+
+// What a command has brought about may outlast it: `until` says to when.
+void TimelineRecorder::end_state(std::size_t actuator, std::uint64_t at) {
+  end_bar(actuator, at);
+  if (lasts_[actuator]) page_["actuators"][actuator]["bars"].back()["until"] = at;
+  lasts_[actuator] = false;
 }
 
 void TimelineRecorder::end_halt(std::size_t actuator, std::uint64_t at) {
@@ -267,7 +294,7 @@ void TimelineRecorder::add_message(const EventReader& reader) {
 
 nlohmann::ordered_json TimelineRecorder::finish(std::uint64_t end_us) {
   for (std::size_t i = 0; i < moves_.size(); ++i) {
-    end_bar(i, end_us);
+    end_state(i, end_us);
     end_halt(i, end_us);
   }
   for (Json& trip : page_["safety"])

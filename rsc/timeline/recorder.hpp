@@ -47,6 +47,7 @@ private:
   void see_subject(const EventReader& reader);
   void begin_bar(const link::Event& event);
   void end_bar(std::size_t actuator, std::uint64_t at);
+  void end_state(std::size_t actuator, std::uint64_t at);
   void end_halt(std::size_t actuator, std::uint64_t at);
   void add_message(const EventReader& reader);
   void deny(const link::Event& event);
@@ -58,6 +59,7 @@ private:
   Json steps_ = Json::array();
   std::vector<std::optional<std::size_t>> owners_;  // of each actuator: the rule that started last
   std::vector<bool> moves_, halted_;                // … its last bar is open
+  std::vector<bool> lasts_;                         // … what its last bar did lasts
 };
 
 }  // namespace robosync::tool

@@ -97,6 +97,13 @@ function drawBars(lane) {
     lane.svg.append(element("rect", {x, y: 2, width: Math.max(place(lane, end) - x, 2), height: lane.height - 4, class: "halt"}));
     label(lane, Math.max(x, 0) + 4, lane.height / 2 + 4, place(lane, end) - Math.max(x, 0), "halted");
   }
+  // What lasts when its command is done: a thin bar, up to the next command.
+  const lasting = lane.of.bars.filter(bar => bar.until > bar.to).map(bar => ({...bar, from: bar.to, to: bar.until, bar}));
+  drawSpans(lane, lasting, (rest, x, width) => {
+    const shape = element("rect", {x, y: lane.height - 10, width, height: 6, class: "bar lasting", ...paint(rest.behavior)});
+    lane.svg.append(selectable(shape, rest.bar));
+    label(lane, x + 4, lane.height - 12, width - 6, rest.text);
+  });
   drawSpans(lane, lane.of.bars, (bar, x, width) => {
     const shape = element("rect", {x, y: 4, width, height: lane.height - 8, rx: 2, class: "bar", ...paint(bar.behavior)});
     lane.svg.append(selectable(shape, bar));

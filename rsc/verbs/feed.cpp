@@ -1,5 +1,5 @@
 // rsc feed READING… --port P [--at TIME] [--scenario S.json] [--upload FILE [--fresh]]
-//          [--watch TIME [--record R.jsonl]] [--format human|json] [--key FILE]
+//          [--anyway] [--watch TIME [--record R.jsonl]] [--format human|json] [--key FILE]
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "rsc/console.hpp"
+#include "rsc/device/keeping.hpp"
 #include "rsc/device/line_recorder.hpp"
 #include "rsc/device/printer.hpp"
 #include "rsc/device/robot_upload.hpp"
@@ -42,6 +43,7 @@ struct FeedOptions {
   CompileOptions how;
   std::optional<milliseconds> at, watch;
   bool fresh = false;
+  bool anyway = false;
   Format format = Format::human;
 };
 
@@ -186,6 +188,23 @@ Wanted wanted(const FeedOptions& options, const Program& program) {
   return wanted;
 }
 
+// A reading that fits another program may be meant for one that the board has given up.
+Wanted wanted_of_running(const FeedOptions& options, Session& session, const Program& program) {
+  try {
+    return wanted(options, program);
+  } catch (const Failure& failure) {
+    if (failure.exit() != Exit::program) throw;
+    const link::Kept kept = session.client.kept();
+    if (kept.given_up_hash == link::ProgramHash{}) throw;
+    throw Failure(
+        failure.exit(),
+        followed_by(failure.what(),
+                    fmt::format("Program {}, which was uploaded before, failed its trial: "
+                                "the robot returned to the program kept before",
+                                text_of(kept.given_up_hash))));
+  }
+}
+
 // A newly started program is fed by its own time, a running one from now on.
 std::uint64_t begin_of_scenario(const FeedOptions& options, Session& session) {
   if (!options.upload.empty()) return 0;
@@ -223,6 +242,13 @@ void check_what_is_asked(const FeedOptions& options) {
   check_output(options.record, {options.scenario, options.upload});
 }
 
+UploadOptions how_to_upload(const FeedOptions& options) {
+  UploadOptions how;
+  how.fresh = options.fresh;
+  how.to_any_robot = options.anyway;
+  return how;
+}
+
 // Errors in the scenario are reported before anything is uploaded.
 void feed(const FeedOptions& options) {
   check_what_is_asked(options);
@@ -242,12 +268,10 @@ void feed(const FeedOptions& options) {
   std::optional<Watch> watch;
   if (options.watch) watch.emplace(session, place, viewers);
   if (program) {
-    UploadOptions how;
-    how.fresh = options.fresh;
-    upload_program(*session, *program, how);
+    upload_program(*session, *program, how_to_upload(options));
   } else {
     program = running_program(*session);
-    stimuli = wanted(options, *program);
+    stimuli = wanted_of_running(options, *session, *program);
   }
   Feeder feeder(*session, program->image());
   if (!stimuli.scenario.empty())
@@ -279,12 +303,18 @@ void add_feed(Options& options) {
   options.option("--upload", "FILE", asked->upload,
                  "upload this program (.rsl or .rsb) first; --watch shows all it does");
   options.flag("--fresh", asked->fresh, "with --upload: variables start as the program says");
+  options.flag("--anyway", asked->anyway,
+               "with --upload: even if it is too much for the board, which may refuse it, or is "
+               "for another robot");
   add_compile_options(options, asked->how);
   add_duration_option(options, "--watch", asked->watch,
                       "show what happens until this long after the last reading is due");
   options.option("--record", "R.jsonl", asked->record, "with --watch: record it for rsc replay");
   add_format_option(options, asked->format);
-  options.runs([asked] { feed(*asked); });
+  options.runs([asked] {
+    if (asked->anyway) asked->how.judged = Judged::not_at_all;
+    feed(*asked);
+  });
 }
 
 }  // namespace robosync::tool

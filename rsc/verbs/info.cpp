@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
+#include "rsc/device/current.hpp"
 #include "rsc/device/devices.hpp"
 #include "rsc/device/introduction.hpp"
 #include "rsc/device/keeping.hpp"
@@ -99,6 +100,25 @@ struct Buses {
   unsigned clears;
 };
 
+// What the running program in `bytes` is kept from, and by what.
+struct Now {
+  Now(Client& client, std::span<const std::byte> bytes) {
+    const bool good = vm::verify(bytes, vm::Limits{}, image).ok();
+    names.image = good ? &image : nullptr;
+    current = current_of(client, names.image);
+  }
+  vm::Image image;
+  TraceNames names;
+  Current current;
+};
+
+std::string now_text(const Now& now) {
+  std::string text;
+  for (const Held& held : held_back(now.current, now.names))
+    text += fmt::format("{:<9} {}\n", held.what, held.text);
+  return text;
+}
+
 std::string buses_text(const Buses& buses) {
   if (buses.devices.empty() && buses.clears == 0) return {};
   unsigned failed = 0;
@@ -115,9 +135,10 @@ std::string buses_text(const Buses& buses) {
 }
 
 void print_board_json(const link::HelloReply& board, std::span<const std::byte> image,
-                      const Past& past, const Buses& buses, const link::Kept& kept,
+                      const Past& past, const Now& now, const Buses& buses, const link::Kept& kept,
                       const link::Authority& owner, const std::vector<link::ThreadInfo>& threads) {
   Json report{{"board", board_json(board, image)}, {"status", status_json(past)}};
+  report["state"] = current_json(now.current, now.names);
   report["owner"] = owner_json(owner);
   report["kept"] = keeping_json(kept);
   report["buses"] = {{"clears", buses.clears}, {"devices", devices_json(buses.devices)}};
@@ -126,8 +147,8 @@ void print_board_json(const link::HelloReply& board, std::span<const std::byte> 
 }
 
 void print_human(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,
-                 const Buses& buses, const link::Kept& kept, const link::Authority& owner,
-                 const std::vector<link::ThreadInfo>& threads) {
+                 const Now& now, const Buses& buses, const link::Kept& kept,
+                 const link::Authority& owner, const std::vector<link::ThreadInfo>& threads) {
   const link::Status& status = past.status;
   std::cout << fmt::format("board     {}, firmware {}, protocol {}\n", text_of(board.board),
                            text_of(board.firmware), board.protocol);
@@ -150,8 +171,7 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
         text_of(kept.given_up_hash));
   if (kept.state != link::Keeping::no_store)
     std::cout << "rollback  " << rollback_text(kept) << '\n';
-  if (board.stopped != 0)
-    std::cout << "stopped   all outputs are in their safe state until `rsc resume`\n";
+  std::cout << now_text(now);
   std::cout << "up        " << past_text(status) << '\n';
   if (past.has_fault()) std::cout << "fault     " << fault_text(past.fault) << '\n';
   std::cout << fmt::format("safety    {} checks, latest by {} us\n", status.safety_checks,
@@ -167,11 +187,13 @@ void info(const std::string& port, Format format) {
   const Past past(session.client);
   const std::vector<link::ThreadInfo> threads = session.client.threads();
   const std::vector<std::byte> image = session.client.running_image();
+  const Now now(session.client, image);
   const Buses buses(image, session.client.devices());
   const link::Kept kept = session.client.kept();
   const link::Authority owner = session.client.authority();
-  format == Format::json ? print_board_json(session.board, image, past, buses, kept, owner, threads)
-                         : print_human(session.board, image, past, buses, kept, owner, threads);
+  format == Format::json
+      ? print_board_json(session.board, image, past, now, buses, kept, owner, threads)
+      : print_human(session.board, image, past, now, buses, kept, owner, threads);
 }
 
 }  // namespace

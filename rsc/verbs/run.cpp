@@ -69,6 +69,14 @@ void note_what_is_late(const RunOptions& options, const Scenario& scenario, std:
       options.scenario, seconds_text(end_us), count, scenario.stimuli.size());
 }
 
+void note_without_readings(const RunOptions& options, const Program& program) {
+  if (!options.scenario.empty() || program.image().sensors.empty()) return;
+  std::cerr << fmt::format(
+      "{}: note: without a scenario no sensor reports anything; --scenario S.json gives readings "
+      "and their times\n",
+      options.file);
+}
+
 std::vector<std::string> inputs_of(const RunOptions& options, const Program& program,
                                    const Kept& kept) {
   std::vector<std::string> inputs = program.files();
@@ -153,6 +161,7 @@ void run(const RunOptions& options) {
   }
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
+  note_without_readings(options, program);
   note_what_is_late(options, scenario, end_us);
   simulator.run_until(end_us + kTakesEffectUs);
   output.write(uploaded);

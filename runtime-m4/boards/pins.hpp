@@ -14,12 +14,15 @@ inline constexpr policy::PinRange kInputs[] = {ROBOSYNC_INPUTS};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_ANALOG_ROWS> kAnalog = {{ROBOSYNC_ANALOG}};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_ENABLE_ROWS> kEnables = {{ROBOSYNC_ENABLES}};
 inline constexpr std::array<policy::PinRange, ROBOSYNC_PANEL_ROWS> kPanels = {{ROBOSYNC_PANELS}};
+inline constexpr std::array<policy::I2cPlace, ROBOSYNC_RESERVED_ROWS> kReserved = {
+    {ROBOSYNC_RESERVED}};
 inline constexpr policy::BoardPins kPins = {.outputs = kOutputs,
                                             .inputs = kInputs,
                                             .analog = kAnalog,
                                             .enables = kEnables,
                                             .panels = kPanels,
                                             .i2c_buses = ROBOSYNC_I2C_BUSES,
+                                            .reserved = kReserved,
                                             .serial_lines = ROBOSYNC_SERIAL_LINES};
 
 // Nothing drives a pin that is read. Only an analog input may be an output for other programs.

@@ -51,6 +51,19 @@ foreach(kind analog enables panels)
     math(EXPR i "${i} + 1")
   endwhile()
 endforeach()
+# {bus, address}: the fields of policy::I2cPlace.
+string(JSON reserved_rows ERROR_VARIABLE any LENGTH "${profile}" reserved)
+if(any)
+  set(reserved_rows 0)
+endif()
+set(board_reserved "")
+set(i 0)
+while(i LESS reserved_rows)
+  string(JSON bus GET "${profile}" reserved ${i} bus)
+  string(JSON address GET "${profile}" reserved ${i} address)
+  string(APPEND board_reserved "{${bus},${address}},")
+  math(EXPR i "${i} + 1")
+endwhile()
 # The host has every part that any board has.
 if(panels_rows EQUAL 0 AND NOT CMAKE_CROSSCOMPILING)
   set(panels_rows 1)
@@ -88,4 +101,5 @@ set(board_definitions
   ROBOSYNC_I2C_BUSES=${i2c_buses} ROBOSYNC_STORE_BYTES=${store_bytes} ROBOSYNC_OUTPUTS=${board_outputs}
   ROBOSYNC_INPUTS=${board_inputs} ROBOSYNC_ANALOG=${board_analog} ROBOSYNC_ANALOG_ROWS=${analog_rows}
   ROBOSYNC_ENABLES=${board_enables} ROBOSYNC_ENABLE_ROWS=${enables_rows}
-  ROBOSYNC_PANELS=${board_panels} ROBOSYNC_PANEL_ROWS=${panels_rows} ROBOSYNC_SERIAL_LINES=${serial_lines})
+  ROBOSYNC_PANELS=${board_panels} ROBOSYNC_PANEL_ROWS=${panels_rows}
+  ROBOSYNC_RESERVED=${board_reserved} ROBOSYNC_RESERVED_ROWS=${reserved_rows} ROBOSYNC_SERIAL_LINES=${serial_lines})

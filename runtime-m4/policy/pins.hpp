@@ -23,6 +23,11 @@ struct PinRange {
   std::uint16_t first, last;  // both included
 };
 
+// An address on an I2C bus.
+struct I2cPlace {
+  std::uint8_t bus, address;
+};
+
 // From stdlib/boards/NAME.json. A pin that is not in `outputs` is no output, and likewise for inputs. No pin of a board is both,
 // whatever the image. An analog input may also be an output: then it is an output, and low, unless the running program has an
 // analog sensor there (guard/output_guard.hpp).
@@ -36,7 +41,8 @@ struct BoardPins {
   // Outputs that can send a panel of lights its picture.
   std::span<const PinRange> panels = {};
   std::uint8_t i2c_buses = 0;
-  std::uint8_t serial_lines = 0;  // for players; the first is vm::kFirstPlayerLine
+  std::span<const I2cPlace> reserved = {};  // addresses of the board's own parts, such as the store
+  std::uint8_t serial_lines = 0;            // for players; the first is vm::kFirstPlayerLine
 };
 
 // Null if the pin is no output.
@@ -78,12 +84,19 @@ constexpr bool is_line(const BoardPins& board, std::uint8_t line) {
   return line >= vm::kFirstPlayerLine && line - vm::kFirstPlayerLine < board.serial_lines;
 }
 
+constexpr bool is_reserved(const vm::Sensor& sensor, const BoardPins& board) {
+  for (const I2cPlace& place : board.reserved)
+    if (place.bus == sensor.bus && place.address == sensor.address) return true;
+  return false;
+}
+
 constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
   if (vm::is_servo_chip(sensor.driver) && !is_enable(board, sensor.first_input))
     return vm::Refusal::no_pin;
   switch (vm::bus_of(sensor.driver)) {
     case vm::Bus::i2c:
-      return sensor.bus < board.i2c_buses ? vm::Refusal::none : vm::Refusal::no_bus;
+      if (sensor.bus >= board.i2c_buses) return vm::Refusal::no_bus;
+      return is_reserved(sensor, board) ? vm::Refusal::reserved_address : vm::Refusal::none;
     case vm::Bus::pin:
       return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
     case vm::Bus::echo:

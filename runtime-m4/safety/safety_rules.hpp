@@ -56,6 +56,8 @@ public:
   // Evaluates all rules. Returns the time at which a time word of theirs is due.  [safety thread]
   kernel::Time look();
 
+  // Bit r of `bits`: rule r is tripped now.  [any]
+  void fill_tripped_now(std::span<std::uint32_t> bits) const;
   // The rules that have tripped since start(), as their rule_key()s. Returns how many; those that find no room are left out.  [any]
   std::size_t fill_tripped(std::span<std::uint32_t> keys) const;
   // Has one of them a key that is not in `known`?  [any]
@@ -77,6 +79,7 @@ private:
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
   void note_trip(unsigned number);
+  bool is_tripped(unsigned number) const { return !tripped_.empty() && tripped_.has(number); }
   bool has_ever_tripped(unsigned number) const;
   std::span<const vm::Rule> rules() const { return {first_rule_, end_rule_}; }
   kernel::Time next_look();

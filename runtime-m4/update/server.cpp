@@ -122,28 +122,37 @@ void Server::answer(const link::Frame& frame) {
       return activate(frame);
     case MessageType::feed:
       return feed(frame);
-    case MessageType::get_fault:
-      return last_fault(frame.sequence);
-    case MessageType::get_devices:
-      return devices(frame.sequence);
-    case MessageType::get_status:
-      return status(frame.sequence);
     case MessageType::stop:
       return stop(frame.sequence);
     case MessageType::resume:
       return resume(frame);
-    case MessageType::get_threads:
-      return list_threads(frame.sequence);
     case MessageType::trace_on:
       return trace_on(frame);
     case MessageType::clear:
       return clear(frame);
+    case MessageType::roll_back:
+      return roll_back(frame);
+    default:
+      return inform(frame);
+  }
+}
+
+void Server::inform(const link::Frame& frame) {
+  switch (frame.type) {
+    case MessageType::get_fault:
+      return last_fault(frame.sequence);
+    case MessageType::get_devices:
+      return devices(frame.sequence);
+    case MessageType::get_state:
+      return state(frame);
+    case MessageType::get_status:
+      return status(frame.sequence);
+    case MessageType::get_threads:
+      return list_threads(frame.sequence);
     case MessageType::read_image:
       return read_image(frame);
     case MessageType::get_kept:
       return kept(frame.sequence);
-    case MessageType::roll_back:
-      return roll_back(frame);
     default:
       return;  // a message meant for a host, or from a later protocol
   }
@@ -310,6 +319,17 @@ void Server::devices(std::uint8_t sequence) {
   link::Devices answer{};
   runtime_.fill_devices(answer);
   send(MessageType::devices, sequence, link::wire_bytes(answer));
+}
+
+void Server::state(const link::Frame& frame) {
+  link::GetState request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  link::State answer{};
+  runtime_.fill_state(answer, request.first);
+  send(MessageType::state, frame.sequence, link::wire_bytes(answer));
 }
 
 void Server::clear(const link::Frame& frame) {

@@ -74,6 +74,7 @@ private:
 
   void handle(const link::Frame& received);
   void answer(const link::Frame& frame);
+  void inform(const link::Frame& frame);  // answers what changes nothing
   void busy(std::uint8_t sequence);
   void authority(std::uint8_t sequence);
   void pair(const link::Frame& frame);
@@ -88,6 +89,7 @@ private:
   void status(std::uint8_t sequence);
   void last_fault(std::uint8_t sequence);
   void devices(std::uint8_t sequence);
+  void state(const link::Frame& frame);
   void list_threads(std::uint8_t sequence);
   void read_image(const link::Frame& frame);
   void clear(const link::Frame& frame);

@@ -14,7 +14,7 @@ from support import AT_WILL, PROFILE, TURNS_ROUND, RobotTest, wheel_on
 PATIENCE = 20
 ARM, MOTOR, FORWARD, BACK = AT_WILL[:4]
 SEVENTY_PERCENT = 14_000  # us
-PWM_DRIVER, LIGHTS_DRIVER = 5, 9  # in vm/drivers.def
+PWM_DRIVER, LIGHTS_DRIVER, WORD_DRIVER = 5, 9, 22  # in vm/drivers.def
 CONFIG = {
     "board": NAME,
     "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
@@ -31,6 +31,12 @@ END
 WITHOUT_MOTOR = """
 WHEN near X > 10
 DO MOVE arm TO 50deg
+END
+"""
+THERMOMETER = """
+WHEN warmth TEMPERATURE > 30C
+MARGIN 1C
+DO LOG "warm"
 END
 """
 
@@ -121,11 +127,21 @@ class Stop(RobotTest):
 
     def refuses(self, form, wiring, why):
         """Checks that the board refuses the program with the motor's wiring changed."""
-        image = self.compiled(PROGRAM)
+        self.refuses_changed(PROGRAM, form, (PWM_DRIVER, 0, MOTOR), wiring, why)
+
+    @unittest.skipUnless(PROFILE.get("reserved"), "this board reserves no address")
+    def test_an_image_for_the_address_of_the_store_is_refused(self):
+        place, allowed = PROFILE["reserved"][0], 0x48
+        robot = {"board": NAME, "sensors": [{"name": "warmth", "type": "I2C", "bus": place["bus"], "address": hex(allowed), "device": "tmp105"}]}
+        (self.folder / "robot.json").write_text(json.dumps(robot))
+        self.refuses_changed(THERMOMETER, "<BBH", (WORD_DRIVER, place["bus"], allowed),
+                             (WORD_DRIVER, place["bus"], int(place["address"], 0)), "a part of the board that programs may not reach")
+
+    def refuses_changed(self, program, form, wired, wiring, why):
+        image = self.compiled(program)
         self.say("upload", image)
         damaged = bytearray(image.read_bytes())
-        motor = damaged.index(struct.pack(form, PWM_DRIVER, 0, MOTOR))
-        struct.pack_into(form, damaged, motor, *wiring)
+        struct.pack_into(form, damaged, damaged.index(struct.pack(form, *wired)), *wiring)
         image.write_bytes(wire.sealed(bytes(damaged)))
         done = rsc.call("upload", image, "--port", self.board.port)
         self.assertNotEqual(done.returncode, 0)

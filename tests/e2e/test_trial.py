@@ -48,7 +48,7 @@ class Trial(Switched):
         for switched in (self.power_cycle, lambda: self.board.reset()):
             self.assertLessEqual(min(self.started_after(switched, kept) for _ in range(STARTS)), SOON_US)
         said = self.upload(second)
-        self.assertRegex(said, r"kept in [0-5]\.\d s if it passes its trial; after a reset before then, the robot starts with")
+        self.assertRegex(said, r"kept in [0-5]\.\d s if it passes its trial: if a SAFETY rule trips .* the robot returns to the program kept before")
         self.assertNotEqual(self.running(), kept)
         self.power_cycle()  # in its trial
         self.await_kept("kept")
@@ -83,6 +83,20 @@ class Trial(Switched):
         self.assertEqual(self.running(), kept)
         rsc.run(*fed, "touch.LEVEL=1")
         self.assertNotEqual(self.running(), kept)
+
+    def test_an_upload_says_that_a_rule_over_what_nobody_has_fed_tripped_at_once(self):
+        kept = self.keep(self.images()[0])
+        config, program = self.folder / "fed.json", self.folder / "fed.rsl"
+        config.write_text(json.dumps(FED_CONFIG))
+        program.write_text(FED_PROGRAM.replace("touch", "pad"))
+        config.write_text(config.read_text().replace('"touch"', '"pad"'))
+        done = rsc.call("upload", program, "--config", config, "--port", self.board.port)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("failed its trial", done.stderr)
+        self.assertEqual(self.running(), kept)
+        done = rsc.call("feed", "pad.LEVEL=1", "--port", self.board.port)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "no sensor `pad`(.|\\n)*which was uploaded before, failed its trial")
 
     @unittest.skipIf(player.is_needed(), "QEMU has no flash controller of this board: the debugger plays it and is not free for a fault")
     def test_a_behaviour_that_faults_in_its_trial_brings_the_kept_program_back(self):

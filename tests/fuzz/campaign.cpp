@@ -140,16 +140,22 @@ void Campaign::lay_out() {
   wire();
 }
 
-// A board drawn for it may not have its pins, analog ones too, or its bus; what it drives there is inside the limits.
+// A board drawn for it may not have its pins, analog ones too, or its bus, or may reserve its address; what it drives there is inside the limits.
 void Campaign::wire() {
   const auto first = static_cast<std::uint16_t>(random_.below(16));
   const policy::PinLimit outputs[] = {{first, 40, 500, 2500, 0}};
   const policy::PinRange inputs[] = {{first, 40}};
+  policy::I2cPlace reserved{0, 0};
+  if (first % 4 == 0 && !accepted_.sensors.empty()) {
+    const vm::Sensor& sensor = accepted_.sensors.front();
+    reserved = {sensor.bus, static_cast<std::uint8_t>(sensor.address)};
+  }
   const policy::BoardPins board{.outputs = outputs,
                                 .inputs = inputs,
                                 .analog = inputs,
                                 .enables = inputs,
-                                .i2c_buses = static_cast<std::uint8_t>(random_.below(3))};
+                                .i2c_buses = static_cast<std::uint8_t>(random_.below(3)),
+                                .reserved = {&reserved, 1}};
   const vm::Verdict verdict = policy::judge(accepted_, board);
   if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
   compute();

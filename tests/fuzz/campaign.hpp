@@ -19,7 +19,7 @@ inline constexpr std::size_t kRefusals = 1 +
 struct Totals {
   std::uint64_t images = 0;
   std::array<std::uint64_t, kRefusals>
-      verdicts{};  // by refusal (no_room, no_pin, no_bus, no_input: by a board drawn for it); the first: accepted
+      verdicts{};  // by refusal (no_room, no_pin, no_bus, no_input, reserved_address: by a board drawn for it); the first: accepted
   std::array<std::uint64_t, kOpcodeCount> opcodes{};  // accepted images that have it
   std::uint64_t runs = 0, pauses = 0;
   double worst_ratio = 0;    // of the cost seen in a step to the cost declared

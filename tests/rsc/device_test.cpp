@@ -231,9 +231,14 @@ TEST_CASE("a program for another robot is refused with both names, except with -
     CHECK_THAT(outcome.err, Contains("this robot is \"ada\", and the program is for \"bob\""));
   }
   CHECK(name() == "ada");
+  // The refused transfer has kept the line.
+  CHECK(device.run({"upload", bob}).exit == 3);
+  const Outcome fed = device.run({"feed", "touch.LEVEL=9", "--watch", "700ms"});
+  CHECK(fed.exit == 0);
+  CHECK_THAT(fed.out, Contains("touch LEVEL = 9"));
   CHECK_THAT(device.run({"info"}).out, Contains("robot     ada\n"));
   CHECK_THAT(device.run({"monitor", "--duration", "200ms"}).out, Contains("        robot  ada\n"));
-  REQUIRE(device.run({"upload", bob, "--anyway"}).exit == 0);
+  REQUIRE(device.run({"feed", "touch.LEVEL=2", "--upload", bob, "--anyway"}).exit == 0);
   CHECK(name() == "bob");
   CHECK_THAT(test::rsc({"dump", bob}).out, Contains(", the robot \"bob\"; "));
 }

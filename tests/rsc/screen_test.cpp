@@ -139,6 +139,29 @@ TEST_CASE("the screen's model knows values, bands and their past") {
   CHECK(touch.history.size() <= 63);
 }
 
+TEST_CASE("the screen's model begins with what the board says of now") {
+  Watched robot;
+  const auto told = [](EventKind kind, std::vector<std::int32_t> values = {}) {
+    link::Event event;
+    event.kind = kind;
+    event.value_count = static_cast<std::uint8_t>(values.size());
+    std::ranges::copy(values, event.values.begin());
+    return event;
+  };
+  tool::Current now{
+      .stopped = true,
+      .events = {told(EventKind::input, {9000}), told(EventKind::trip), told(EventKind::halt)}};
+  robot.model.current(now, robot.names);
+  CHECK(robot.model.sensors().at(0).value == "9");
+  CHECK_THAT(robot.text(), Contains("is tripped") && Contains("HALTED") &&
+                               Contains("stopped by a person") && !Contains("nothing is tripped"));
+  CHECK(robot.model.log().empty());
+  robot.event(EventKind::trip, 1000, 0);  // told again by an event that was under way
+  CHECK(robot.model.trips().size() == 1);
+  robot.model.current({}, robot.names);
+  CHECK_THAT(robot.text(), !Contains("HALTED") && Contains("nothing is tripped"));
+}
+
 TEST_CASE("a screen has as many lines as the terminal, none too wide, whatever its size") {
   Watched robot;
   for (int i = 0; i < 50; ++i)

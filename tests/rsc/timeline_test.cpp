@@ -85,10 +85,34 @@ TEST_CASE("a bar is a command, from when it reaches its actuator until it is don
   const json& bar = arm.at("bars").at(0);
   CHECK(bar.at("text") == "MOVE SLOWLY TO 90deg");
   CHECK(bar.at("from") == 1'000'000);
-  CHECK(bar.at("to") == 2'000'000);  // 90deg at 90deg/s
+  CHECK(bar.at("to") == 2'000'000);     // 90deg at 90deg/s
+  CHECK(bar.at("until") == 4'000'000);  // it stays there, until it is halted
   CHECK(page.run_of.at("behaviors").at(bar.at("behavior").get<std::size_t>()) == "strong");
   CHECK(page.run_of.at("rules").at(bar.at("rule").get<std::size_t>()).at("line") == 12);
   CHECK(arm.at("halts") == json::parse("[[4000000, 6000000]]"));
+}
+
+TEST_CASE("a power and a picture last until the next command; with FOR, and at 0, they do not") {
+  const Folder folder;
+  folder.write("robot.json", R"({"actuators": [
+    {"name": "wheel", "type": "PWM", "pin": 10, "device": "pwm"},
+    {"name": "face", "type": "VIRTUAL", "device": "face"}]})");
+  const std::string program = folder.write("robot.rsl",
+                                           "AT START DO\n  RUN wheel TO 50%\n  SHOW face happy\n"
+                                           "  WAIT 6s\n  RUN wheel TO 0%\n  WAIT 1s\n"
+                                           "  RUN wheel TO 20% FOR 1s\nEND\n");
+  REQUIRE(test::rsc({"run", program, "--html", folder.path("run.html")}).exit == 0);
+  const std::string text = folder.read("run.html");
+  const std::string begin = R"(<script type="application/json" id="run">)";
+  const std::size_t at = text.find(begin) + begin.size();
+  const json run = json::parse(text.substr(at, text.find("</script>", at) - at));
+  const json& bars = run.at("actuators").at(0).at("bars");
+  REQUIRE(bars.size() == 3);
+  CHECK(bars.at(0).at("to") == 0);
+  CHECK(bars.at(0).at("until") == 6'000'000);
+  CHECK_FALSE(bars.at(1).contains("until"));
+  CHECK_FALSE(bars.at(2).contains("until"));
+  CHECK(run.at("actuators").at(1).at("bars").at(0).at("until") == run.at("end_us"));
 }
 
 TEST_CASE("who was denied is told by whom, and what SAFETY did from when to when") {

@@ -580,6 +580,8 @@ TEST_CASE(
   CHECK(refused([](auto& chip, auto&...) { chip.period_ms = 10; }) == Refusal::bad_value);
   CHECK(refused([](auto& chip, auto&...) { chip.period_ms = 0; }) == Refusal::bad_value);
   CHECK(refused([](auto& chip, auto&...) { chip.bus = 3; }) == Refusal::no_bus);
+  CHECK(refused([](auto& chip, auto&...) { chip.address = 0x50; }) == Refusal::reserved_address);
+  CHECK(refused([](auto& chip, auto&...) { chip.address = 0x51; }) == Refusal::none);
   CHECK(refused([](auto& chip, auto& other, auto&...) { chip.first_input = other.first_input; }) ==
         Refusal::shared_pin);
   for (const int pin : {0, 3, 35, 38, 40, 44, 255})

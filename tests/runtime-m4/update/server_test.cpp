@@ -134,6 +134,38 @@ TEST_CASE("a reading that is fed leads to a command, and the trace shows it") {
   CHECK(client.feed({.channel = 9, .at_us = 0, .value = 0}).error == link::FeedError::no_channel);
 }
 
+TEST_CASE("the state has the values of all inputs, part by part") {
+  Robot robot;
+  tool::Client client(robot);
+  std::string text;
+  constexpr std::size_t kMany = 40;
+  for (std::size_t i = 0; i < kMany; ++i)
+    text += "REMEMBER v" + std::to_string(i) + " = " + std::to_string(i) + "\n";
+  text += "WHEN touch LEVEL > 5 DO\n  SET v0 TO 7\n  SET v39 TO v38 + 1\nEND\n";
+  CHECK(client.state(0).count == 0);
+  const tool::Program program = test::compile(text);
+  REQUIRE(upload(client, program.bytes()).running == 1);
+  REQUIRE(client.feed({.channel = 0, .at_us = 0, .value = 6000}).error == link::FeedError::none);
+  robot.run(50);
+  const std::size_t inputs = 1 + program.image().variables.size();
+  std::vector<std::int32_t> values;
+  while (values.size() < inputs) {
+    const link::State state = client.state(static_cast<std::uint32_t>(values.size()));
+    REQUIRE(state.count > 0);
+    values.insert(values.end(), state.values.begin(), state.values.begin() + state.count);
+  }
+  REQUIRE(values.size() == inputs);
+  CHECK(values.front() == 6000);
+  for (std::size_t v = 0; v < program.image().variables.size(); ++v) {
+    const auto name = program.image().string(program.image().variables[v].name);
+    CAPTURE(name);
+    const int number = std::stoi(std::string(name.substr(1)));
+    CHECK(values[1 + v] == 1000 * (number == 0 ? 7 : number));
+  }
+  CHECK(client.state(static_cast<std::uint32_t>(inputs)).count == 0);
+  CHECK(client.state(0xFFFF'FFFF).count == 0);
+}
+
 TEST_CASE("a stop does not wait until somebody reads the line") {
   Robot robot;
   robot.run(10);
