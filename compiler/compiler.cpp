@@ -18,14 +18,50 @@ namespace {
 Diagnostics offer_modules(const Diagnostics& diagnostics) {
   Diagnostics result;
   for (Diagnostic diagnostic : diagnostics.all()) {
-    const std::string_view module =
-        diagnostic.unknown.empty() ? std::string_view() : module_with(diagnostic.unknown);
+    bool is_motion = false;
+    const std::string_view module = diagnostic.unknown.empty()
+                                        ? std::string_view()
+                                        : module_with(diagnostic.unknown, &is_motion);
     if (!module.empty()) {
+      const bool performs = is_motion && diagnostic.in_verb_place;
       diagnostic.fixes.clear();
-      diagnostic.help = {"the module `" + std::string(module) + "` has it: write `USE " +
-                         std::string(module) + "` at the top"};
+      diagnostic.help = {"the module `" + std::string(module) + "` has it" +
+                         (performs ? ", as a MOTION" : "") + ": write `USE " + std::string(module) +
+                         "` at the top" +
+                         (performs ? ", and here `PERFORM " + diagnostic.unknown + "`" : "")};
     }
     result.add(std::move(diagnostic));
+  }
+  return result;
+}
+
+bool is_clash_with_module(const Diagnostic& one) {
+  return one.code == Code::E0101 && one.labels.size() == 2 &&
+         one.labels[0].span.file == kProgramFile && one.labels[1].span.file != kProgramFile &&
+         one.labels[1].span.file != kConfigurationFile;
+}
+
+// A name of the program that a module has too: names the module. What is wrong with that name in the module is a consequence.
+Diagnostics without_clashes(const Diagnostics& diagnostics, const SourceMap& sources) {
+  const auto quotes_clash = [&](const Diagnostic& one) {
+    if (one.code == Code::E0101 || one.labels.empty()) return false;
+    return std::ranges::any_of(diagnostics.all(), [&](const Diagnostic& clash) {
+      if (!is_clash_with_module(clash)) return false;
+      const Span other = clash.labels[1].span;
+      const std::string name = "`" + std::string(sources.text(other)) + "`";
+      return one.labels.front().span.file == other.file &&
+             one.message.find(name) != std::string::npos;
+    });
+  };
+  Diagnostics result;
+  for (Diagnostic one : diagnostics.all()) {
+    if (quotes_clash(one)) continue;
+    if (is_clash_with_module(one)) {
+      std::string module(sources.file(one.labels[1].span.file).name());
+      std::erase_if(module, [](char c) { return c == '<' || c == '>'; });
+      one.labels[1].text = "the module `" + module + "`, which you use, has this name too";
+    }
+    result.add(std::move(one));
   }
   return result;
 }
@@ -65,7 +101,8 @@ Result compile(Input program, Input configuration, const Options& options) {
     for (const ir::LearnedWord& word : written.words)
       reading->robot->sensors[word.channel.sensor].channels[word.channel.channel].add_label(
           word.text);
-    if (diagnostics.errors() > 0) diagnostics = without_warned(offer_modules(diagnostics));
+    if (diagnostics.errors() > 0)
+      diagnostics = without_clashes(without_warned(offer_modules(diagnostics)), result.sources);
     if (diagnostics.errors() == 0)
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
   }

@@ -65,6 +65,7 @@ target_sources(robosync_compiler PRIVATE
   syntax/parser.cpp
   syntax/reader.cpp
   syntax/repair.cpp
+  syntax/robot_lines.cpp
   syntax/wrong_forms.cpp
   syntax/wording.cpp
   units/foreign_units.cpp)
@@ -76,6 +77,6 @@ if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
     diagnostics/render_human.cpp diagnostics/render_json.cpp diagnostics/sarif.cpp diagnostics/snippet.cpp
     syntax/examples.cpp syntax/foreign_habits.cpp syntax/format.cpp syntax/habits.cpp syntax/lexer_habits.cpp syntax/lost_heads.cpp
-    syntax/misplaced_words.cpp syntax/wording.cpp syntax/wrong_forms.cpp
+    syntax/misplaced_words.cpp syntax/robot_lines.cpp syntax/wording.cpp syntax/wrong_forms.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

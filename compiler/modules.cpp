@@ -87,7 +87,7 @@ private:
 
 }  // namespace
 
-std::string_view module_with(std::string_view name) {
+std::string_view module_with(std::string_view name, bool* is_motion) {
   for (const ModuleText& module : module_texts()) {
     for (std::string_view rest = module.text; !rest.empty();) {
       const std::string_view line = rest.substr(0, rest.find('\n'));
@@ -95,7 +95,9 @@ std::string_view module_with(std::string_view name) {
       for (const std::string_view gives : {"DEFINE ", "MOTION "}) {
         if (!line.starts_with(gives)) continue;
         const std::string_view given = line.substr(gives.size());
-        if (same_name(given.substr(0, given.find(' ')), name)) return module.name;
+        if (!same_name(given.substr(0, given.find(' ')), name)) continue;
+        if (is_motion != nullptr) *is_motion = gives == "MOTION ";
+        return module.name;
       }
     }
   }

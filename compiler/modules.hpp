@@ -20,8 +20,8 @@ struct ModuleText {  // one built-in module
 };
 [[nodiscard]] std::span<const ModuleText> module_texts();
 
-// The module that has a DEFINE or a MOTION of this name; empty when none has.
-[[nodiscard]] std::string_view module_with(std::string_view name);
+// The module that has a DEFINE or a MOTION of this name; empty when none has. `is_motion`, if given, says which of the two it is.
+[[nodiscard]] std::string_view module_with(std::string_view name, bool* is_motion = nullptr);
 
 struct Module {
   FileId file = 0;

@@ -16,13 +16,14 @@ bool is_kind(const Board::Part& part, bool is_sensor) {
   return find_device(part.device, is_sensor) != nullptr;
 }
 
+// The board's own parts first: a message shows only the first names.
 std::vector<std::string> device_names(const Board& board, bool is_sensor) {
   std::vector<std::string> names;
-  for (const DeviceText& device : device_texts())
-    if (device.is_sensor == is_sensor) names.emplace_back(device.name);
   for (const Board::Part& part : board.parts)
     if (is_kind(part, is_sensor) && find_device(part.name, is_sensor) == nullptr)
       names.push_back(part.name);
+  for (const DeviceText& device : device_texts())
+    if (device.is_sensor == is_sensor) names.emplace_back(device.name);
   return names;
 }
 

@@ -58,8 +58,9 @@ struct Diagnostic {
   std::vector<Label> labels;
   std::vector<std::string> help;  // how to fix it
   std::vector<Fix> fixes;
-  std::size_t repeated = 0;  // how many more places have the same message
-  std::string unknown;       // the unknown name, if any; a module that is not used may have it
+  std::size_t repeated = 0;    // how many more places have the same message
+  std::string unknown;         // the unknown name, if any; a module that is not used may have it
+  bool in_verb_place = false;  // that name stands where a command has its verb
 
   // Chainable builders.
   Diagnostic& label(Span span, std::string text = {}, bool primary = true);

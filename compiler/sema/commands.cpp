@@ -382,6 +382,11 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
   const std::string verbs = param == vm::Param::by ? verb_by(actuator, number.dimension()) : "";
   if (!verbs.empty())
     d.helps(verbs + " takes " + std::string(dimension_phrase(number.dimension())));
+  if (number.digits.empty() && number.dimension() == vm::Dimension::number && verbs.empty())
+    d.helps("multiplied by a unit, a number becomes " +
+            std::string(dimension_phrase(unit.dimension)) + ": `" +
+            (number.source.empty() ? "…" : number.source) + " * 1" + std::string(unit.spelling) +
+            "`");
   if (number.digits.empty() || !verbs.empty()) return;
   const std::string mended = number.digits + std::string(unit.spelling);
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
@@ -654,6 +659,10 @@ void Commands::report_not_taken(const Recipient& to, const Given& given) {
   if (place)
     d.helps(verb + " takes a position or a power with `TO`")
         .fix({span.file, span.begin, span.begin}, "TO ", Applicability::likely);
+  else if (given.param == vm::Param::times)
+    d.helps("to do it several times, write `REPEAT " +
+            (given.number.digits.empty() ? "3" : given.number.digits) +
+            " TIMES`, the command and `END`, each on its own line");
   else
     d.helps(taken_by(to.verb));
 }

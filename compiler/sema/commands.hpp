@@ -112,11 +112,13 @@ private:
   bool lacks_brackets(const ast::Command& command, std::size_t place);
   // Arguments that together mean something else (misread.cpp).
   bool is_misread(const ast::Command& command, std::size_t place);
+  bool is_word_of_program(const ast::Command& command, std::size_t place);
   bool is_second_command(const ast::Command& command, std::size_t place);
   bool is_foreign_preposition(const ast::Command& command, std::size_t place);
   bool is_reading(const ast::Command& command, std::size_t place);
   bool lacks_comma(const ast::Command& command, std::size_t place);
   bool lacks_list(const ast::Command& command, std::size_t place);
+  [[nodiscard]] bool can_go_to(std::string_view verb) const;
   bool is_unit_apart(const ast::Command& command, std::size_t place);
   static bool is_sensor_meant(const Recipient& to, const ast::Word& word, const Names& names);
   // Parts that are each correct but wrong together (whole_commands.cpp).

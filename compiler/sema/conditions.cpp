@@ -1,4 +1,5 @@
 // Part of Expressions: conditions on words and truths, and conditions that remember the past.
+#include <algorithm>
 #include <array>
 
 #include "compiler/diagnostics/nearest.hpp"
@@ -14,11 +15,59 @@ vm::Value label_value(std::size_t place) {
   return static_cast<vm::Value>(place) * vm::kScale;
 }
 
+namespace {
+
+std::vector<std::string_view> split_words(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!text.empty()) {
+    const std::size_t length = std::min(text.find(' '), text.size());
+    words.push_back(text.substr(0, length));
+    text.remove_prefix(std::min(length + 1, text.size()));
+  }
+  return words;
+}
+
+// `STATE mood: happy sad`: without commas the words are one, and such a STATE has nothing to change to. The same message for each
+// place that uses one of them: they become one.
+bool lacks_comma(Names& names, const ast::Name& label, std::string_view owner,
+                 Diagnostics& diagnostics) {
+  const VariableName* const variable = names.find_variable(owner);
+  const auto* const state =
+      variable == nullptr ? nullptr : std::get_if<const ast::State*>(&variable->declared);
+  if (state == nullptr || (*state)->labels.size() != 1) return false;
+  const ast::Name& whole = (*state)->labels.front();
+  const std::vector<std::string_view> words = split_words(whole.text);
+  const auto is_it = [&](std::string_view word) { return same_name(word, label.text); };
+  if (words.size() < 2 || std::ranges::none_of(words, is_it)) return false;
+  std::string better;
+  for (const std::string_view word : words)
+    better += (better.empty() ? "" : ", ") + std::string(word);
+  Span place = whole.span;
+  if (words.size() == 2) {
+    place.begin += static_cast<std::uint32_t>(words.front().size());
+    place.end -= static_cast<std::uint32_t>(words.back().size());
+  }
+  diagnostics
+      .report(Code::E0008,
+              words.size() == 2
+                  ? "a comma is missing between `" + std::string(words.front()) + "` and `" +
+                        std::string(words.back()) + "`"
+                  : "commas are missing between the words of " + (*state)->name.shown())
+      .label(place)
+      .label(label.span, "used here", false)
+      .helps("write `STATE " + std::string((*state)->name.text) + ": " + better + "`")
+      .fix(whole.span, better, Applicability::likely);
+  return true;
+}
+
+}  // namespace
+
 std::optional<std::size_t> find_label(Names& names, const std::vector<std::string>& labels,
                                       const ast::Name& label, std::string_view owner,
                                       Diagnostics& diagnostics, bool quoted) {
   if (const auto place = names.find_label(labels, label.text)) return place;
   if (label.text.empty()) return std::nullopt;  // missing; reported already
+  if (lacks_comma(names, label, owner, diagnostics)) return std::nullopt;
   Diagnostic& d =
       diagnostics.report(Code::E0501, "`" + std::string(owner) + "` is never " + label.shown())
           .label(label.span);

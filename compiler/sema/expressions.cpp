@@ -124,6 +124,11 @@ bool Expressions::set_following(bool following) {
   return std::exchange(following_, following);
 }
 
+bool Expressions::chooses_text(std::string_view word, std::string_view list) const {
+  const ListName* const found = names_.find_list(list);
+  return found != nullptr && !found->numbers && (same_name(word, "ANY") || same_name(word, "NEXT"));
+}
+
 const Binding* Expressions::find_binding(std::string_view name) const {
   if (bindings_ == nullptr) return nullptr;
   const std::string folded = fold_name(name);

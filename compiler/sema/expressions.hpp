@@ -78,6 +78,8 @@ public:
   // Sets the visible parameters; nullptr: none. Returns the previous ones.
   const Bindings* set_bindings(const Bindings* bindings);
   [[nodiscard]] const Binding* find_binding(std::string_view name) const;
+  // `ANY jokes`, `NEXT jokes`, where `jokes` is a LIST of texts
+  [[nodiscard]] bool chooses_text(std::string_view word, std::string_view list) const;
   // Sets whether expressions are for a FOLLOW, which evaluates parameters each time, not beforehand.
   // Returns the previous setting.
   bool set_following(bool following);

@@ -140,12 +140,16 @@ std::optional<ChosenItem> Statements::chosen_item(const ListChoice& choice, Span
   if (choice.list == nullptr) return std::nullopt;
   const std::size_t count = choice.list->count();
   if (safety_ || count > kMaxTexts) {
-    diagnostics_
-        .report(safety_ ? Code::E0404 : Code::E0407,
-                safety_ ? "a SAFETY rule cannot choose from a LIST"
+    Diagnostic& d =
+        diagnostics_
+            .report(safety_ ? Code::E0404 : Code::E0407,
+                    safety_
+                        ? "a SAFETY rule cannot choose from a LIST"
                         : choice.list->list->name.shown() + " has " + std::to_string(count) +
                               " texts; a rule can choose from at most " + std::to_string(kMaxTexts))
-        .label(choice.span);
+            .label(choice.span);
+    if (!safety_)
+      d.helps("make two LISTs of it, and let `PICK ONE` with two OPTIONs choose between them");
     return std::nullopt;
   }
   if (choice.chosen != nullptr) return *choice.chosen;

@@ -35,7 +35,9 @@ Span both(const ast::Argument& first, const ast::Argument& second) {
 
 // True if the argument and the next one are not meant as two arguments; reports it.
 bool Commands::is_misread(const ast::Command& command, std::size_t place) {
-  if (is_second_command(command, place) || lacks_brackets(command, place)) return true;
+  if (is_second_command(command, place) || lacks_brackets(command, place) ||
+      is_word_of_program(command, place))
+    return true;
   const std::size_t next = place + 1;
   const std::size_t first_part = command.arguments.size() - command.parts;
   if (next >= command.arguments.size() || is_chosen(place) || is_chosen(next)) return false;
@@ -43,6 +45,42 @@ bool Commands::is_misread(const ast::Command& command, std::size_t place) {
   return next < first_part &&
          (is_foreign_preposition(command, place) || is_reading(command, place) ||
           lacks_comma(command, place) || is_unit_apart(command, place));
+}
+
+// `SHOW eyes mood`, where `mood` is a STATE: the words of a command are the actuator's.
+bool Commands::is_word_of_program(const ast::Command& command, std::size_t place) {
+  const ast::Word* const word = is_chosen(place) ? nullptr : plain_word(command.arguments[place]);
+  if (word == nullptr || is_known_word(word->name.text) ||
+      expressions_.find_binding(word->name.text) != nullptr)
+    return false;
+  const VariableName* const variable = names_.find_variable(word->name.text);
+  const std::vector<std::size_t>& able = names_.able_to(command.verb.text);
+  if (able.empty() || variable == nullptr || variable->taken || variable->labels.empty())
+    return false;
+  const ast::Word* const first = place == 0 ? nullptr : plain_word(command.arguments.front());
+  const auto named = first == nullptr ? std::nullopt : names_.find_target(first->name.text);
+  const bool is_named = named && !named->actuators.empty();
+  const ActuatorConfig& actuator =
+      robot_.actuators[is_named ? named->actuators.front() : able.front()];
+  const VerbConfig* const verb = actuator.find_verb(command.verb.text);
+  if (verb == nullptr || verb->texts == Texts::any) return false;
+  const std::vector<std::string> known = actuator.words_of(*verb);
+  if (known.empty()) return false;
+  const auto both_have = [&](const std::string& label) {
+    return std::ranges::any_of(known, [&](const auto& one) { return same_name(one, label); });
+  };
+  const auto shared = std::ranges::find_if(variable->labels, both_have);
+  const std::string asked = shared == variable->labels.end() ? variable->labels.front() : *shared;
+  const std::string given = shared == variable->labels.end() ? known.front() : *shared;
+  diagnostics_
+      .report(Code::E0306, "`" + verb->name + "` takes a word of " + actuator.name.shown() +
+                               ", but " + word->name.shown() + " is " +
+                               names_.kind_of(word->name.text))
+      .label(word->name.span)
+      .helps("write an IF for each word: `IF " + std::string(word->name.text) + " IS " + asked +
+             " DO " + verb->name + " " +
+             (first == nullptr ? "" : std::string(first->name.text) + " ") + given + " END`");
+  return true;
 }
 
 // `SAY "Hello" MOVE head LEFT`
@@ -182,6 +220,14 @@ bool Commands::lacks_list(const ast::Command& command, std::size_t place) {
   return true;
 }
 
+// Does an actuator that has this verb take a change and a position?
+bool Commands::can_go_to(std::string_view verb) const {
+  return std::ranges::any_of(names_.able_to(verb), [&](std::size_t actuator) {
+    const VerbConfig* const known = robot_.actuators[actuator].find_verb(verb);
+    return known->has(vm::Param::to) && known->has(vm::Param::by);
+  });
+}
+
 // `30 degrees`
 bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
   const auto* const amount = std::get_if<ast::Amount>(&command.arguments[place].value);
@@ -194,10 +240,16 @@ bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
   const Unit* const unit = find_unit(word->name.text);
   if (!bare || unit == nullptr || is_known_word(word->name.text)) return false;
   const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
-  diagnostics_.report(Code::E0505, "a unit follows its number without a space")
-      .label(both(command.arguments[place], next))
-      .helps("write the unit right after the number, as in `30" + std::string(unit->spelling) + "`")
-      .fix(gap, "");
+  const std::string better = std::string(number->digits) + std::string(unit->spelling);
+  const bool relative = command.arguments[place].preposition == ast::Preposition::none &&
+                        can_go_to(command.verb.text);
+  Diagnostic& d = diagnostics_.report(Code::E0505, "a unit follows its number without a space");
+  d.label(both(command.arguments[place], next))
+      .helps("write `" + better + "`")
+      .fix(gap, "", relative ? Applicability::likely : Applicability::certain);
+  if (relative)
+    d.helps("alone, it is how far from where it is now (`BY`); for a position, write `TO " +
+            better + "`");
   return true;
 }
 

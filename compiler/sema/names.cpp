@@ -31,6 +31,26 @@ constexpr WordAsName kWordsAsNames[] = {
     {"RANDOM", "`RANDOM` takes two numbers: `RANDOM(1, 6)`"},
 };
 
+// A word of RSL, a verb or a function in the place of a sensor.
+bool helps_with_other_word(const Names& names, const ast::Operand& operand, Diagnostic& d) {
+  const std::string_view word = operand.name.text;
+  if (!operand.channel) {
+    const auto* const one = std::ranges::find_if(
+        kWordsAsNames, [&](const WordAsName& known) { return same_name(known.word, word); });
+    if (one == std::end(kWordsAsNames)) return false;
+    d.helps(std::string(one->help));
+    return true;
+  }
+  const FunctionName* const function = find_function(word);
+  if (names.is_verb(word))
+    d.helps(operand.name.shown() + " is a verb: write each command on its own line");
+  else if (function != nullptr)
+    d.helps("write `" + std::string(function->name) + "(…)`: its number goes in brackets");
+  else
+    return false;
+  return true;
+}
+
 vm::VariableKind remembered_as(const ast::Remember& variable) {
   return variable.kept ? vm::VariableKind::kept : vm::VariableKind::plain;
 }
@@ -150,16 +170,7 @@ void Names::report_unknown(const ast::Operand& operand) {
   const std::string what = operand.channel ? "sensor " : "sensor, LET or variable called ";
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.shown())
                       .label(operand.name.span);
-  for (const WordAsName& one : kWordsAsNames)
-    if (!operand.channel && same_name(one.word, operand.name.text)) {
-      d.helps(std::string(one.help));
-      return;
-    }
-  if (const FunctionName* const function = find_function(operand.name.text);
-      function != nullptr && operand.channel) {
-    d.helps("write `" + std::string(function->name) + "(…)`: its number goes in brackets");
-    return;
-  }
+  if (helps_with_other_word(*this, operand, d)) return;
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
   if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
   std::vector<std::string> candidates;

@@ -34,7 +34,9 @@ bool TextBuilder::add(const ast::Argument& part) {
     const Binding* binding = operand != nullptr && !operand->channel
                                  ? expressions_.find_binding(operand->name.text)
                                  : nullptr;
-    if (binding != nullptr && binding->chosen) return report_second(part.span);
+    const bool second = operand != nullptr && operand->channel &&
+                        expressions_.chooses_text(operand->name.text, operand->channel->text);
+    if (second || (binding != nullptr && binding->chosen)) return report_second(part.span);
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
     value = expressions_.any(*amount->value);
   } else if (const auto* word = std::get_if<ast::Word>(&part.value)) {

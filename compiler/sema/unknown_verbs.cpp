@@ -146,6 +146,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
       diagnostics_.report(Code::E0501, "there is no " + what + verb.shown()).label(verb.span);
   if (names_.find_motion(verb.text) != nullptr) return suggest_perform(d, verb);
   if (command.arguments.empty()) d.unknown = verb.text;
+  d.in_verb_place = true;
   if (names_.find_define(verb.text) != nullptr) {
     report_run_define(command, d);
     return;

@@ -318,7 +318,7 @@ void Variables::smooth(const ast::Check& node, const Typed& input, ir::Check& re
       .report(Code::E0509, "SMOOTH can use at most " + std::to_string(vm::kMaxWindow) +
                                " samples, but this is " + std::to_string(window))
       .label(node.smooth->span)
-      .label(input.span, "a sample every " + format_value(period, second), false)
+      .label(input.span, "a sample every " + std::to_string(period) + "ms", false)
       .helps("smooth over at most " + format_value(period * vm::kMaxWindow, second) +
              (has_rate(input, names_) ? ", or give the sensor a lower rate" : ""));
 }

@@ -306,4 +306,21 @@ std::string Examples::command() const {
   return text.empty() ? "MOVE left_arm UP SLOWLY" : text;
 }
 
+std::string Examples::condition(const std::vector<std::string_view>& words) const {
+  using Part = Vocabulary::Part;
+  const auto sensor = std::ranges::find_if(words, [&](auto word) { return is_sensor(word); });
+  const std::string text =
+      robot_ == nullptr ? "" : robot_->part(Part::condition, sensor == words.end() ? "" : *sensor);
+  return text.empty() ? "touch LEVEL > 3" : text;
+}
+
+bool Examples::is_verb(std::string_view word) const {
+  return robot_ != nullptr && !word.empty() && !robot_->command(word, "", false).empty();
+}
+
+bool Examples::is_sensor(std::string_view word) const {
+  return robot_ != nullptr && !word.empty() &&
+         !robot_->part(Vocabulary::Part::condition, word).empty();
+}
+
 }  // namespace robosync::compiler

@@ -38,6 +38,11 @@ public:
   [[nodiscard]] std::string written_like(const Tokens& piece, std::size_t at) const;
   // "MOVE left_arm UP SLOWLY"
   [[nodiscard]] std::string command() const;
+  // "touch LEVEL > 5", about the first of these words that is a sensor; if none is, about any.
+  [[nodiscard]] std::string condition(const std::vector<std::string_view>& words) const;
+  // Of the robot; without a robot, of none.
+  [[nodiscard]] bool is_verb(std::string_view word) const;
+  [[nodiscard]] bool is_sensor(std::string_view word) const;
 
 private:
   OwnNames own_;

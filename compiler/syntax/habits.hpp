@@ -10,6 +10,7 @@
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/syntax/edit.hpp"
+#include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/reader.hpp"
 
 namespace robosync::compiler {
@@ -26,6 +27,9 @@ namespace robosync::compiler {
 // What other languages write in place of DEFINE.
 inline constexpr std::array<std::string_view, 9> kForeignDefines = {
     "FUNCTION", "FUNC", "FUN", "FN", "DEF", "PROCEDURE", "PROC", "SUB", "VOID"};
+
+// What to do with two commands in one line.
+constexpr std::string_view kOwnLine = "write each command on its own line: they start together";
 
 // Habits from other constructs of RSL (habits.cpp) and from other languages (foreign_habits.cpp), and words that mean
 // something else where they are (misplaced_words.cpp).
@@ -47,5 +51,17 @@ inline constexpr std::array<std::string_view, 9> kForeignDefines = {
 [[nodiscard]] std::optional<Edit> explain_wrong_form(const Tokens& tokens, const SourceFile& source,
                                                      const Attempt& failure,
                                                      Diagnostics& diagnostics);
+
+// Lines that only the robot's names tell from other mistakes (robot_lines.cpp). `SAY "a", SHOW eyes happy`: looks like a wrong text,
+// so it comes before the others.
+[[nodiscard]] std::optional<Edit> explain_joined_command(const Tokens& tokens,
+                                                         const SourceFile& source,
+                                                         const Attempt& failure,
+                                                         const Examples& examples,
+                                                         Diagnostics& diagnostics);
+// `WHEN I see a person`
+[[nodiscard]] std::optional<Edit> explain_sentence(const Tokens& tokens, const SourceFile& source,
+                                                   const Attempt& failure, const Examples& examples,
+                                                   Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler

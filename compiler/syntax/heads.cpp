@@ -2,6 +2,7 @@
 #include "compiler/syntax/heads.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/blocks.hpp"
@@ -71,13 +72,43 @@ bool declares(TokenKind first, TokenKind behind) {
   }
 }
 
+bool has_capital(std::string_view text) {
+  return std::ranges::any_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
 // A word that cannot be a name, in lower case: RSL is mostly written in capitals. The name of a DEFINE begins a line, so it can
-// be no word of RSL at all.
+// be no word of RSL at all, however it is written.
 bool is_reserved_name(const Token& token, bool define, const SourceFile& source) {
   if (!is_keyword(token.kind) || (!define && (roles_of(token.kind) & role::name) != 0))
     return false;
-  const std::string_view text = source.text(token.span);
-  return std::ranges::none_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
+  const bool ends = token.kind == Kinds::END || token.kind == Kinds::DO;
+  return !has_capital(source.text(token.span)) || (define && !ends);
+}
+
+// `margin BELOW 5` in a CHECK: a word that may follow the first line of the CHECK cannot begin a band.
+bool is_reserved_band(const Tokens& tokens, std::size_t at, const SourceFile& source) {
+  const unsigned roles = roles_of(tokens[at].kind);
+  return starts_line(tokens, at) && is_keyword(tokens[at].kind) &&
+         ((roles & role::name) == 0 || (roles & role::after) != 0) &&
+         is_one_of(tokens[at + 1].kind, {Kinds::BELOW, Kinds::ABOVE}) &&
+         tokens[at + 2].kind == Kinds::QUANTITY && !has_capital(source.text(tokens[at].span));
+}
+
+void report_reserved(const Token& name, const SourceFile& source, Diagnostics& diagnostics) {
+  diagnostics
+      .report(Code::E0010,
+              "`" + std::string(source.text(name.span)) + "` is a word of RSL and cannot be a name")
+      .label(name.span, "choose another name");
+}
+
+// From here on the word is a name in all such lines and where something is compared with it. So this runs at most once per word.
+void make_band(Tokens& tokens, std::size_t at, const SourceFile& source) {
+  const TokenKind kind = tokens[at].kind;
+  for (std::size_t use = at; use + 2 < tokens.size(); ++use)
+    if (tokens[use].kind == kind &&
+        (is_reserved_band(tokens, use, source) ||
+         is_one_of(tokens[use - 1].kind, {Kinds::IS, Kinds::NOT, Kinds::BECOMES})))
+      tokens[use].kind = Kinds::NAME;
 }
 
 // Where a DEFINE gets its name or is run: `stop` on its own, but not `STOP arms`.
@@ -104,16 +135,19 @@ void fill_empty_block(Tokens& tokens, std::size_t line_end) {
 
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
   for (std::size_t at = 0; at + 2 < tokens.size(); ++at) {
+    if (is_reserved_band(tokens, at, source)) {
+      report_reserved(tokens[at], source, diagnostics);
+      make_band(tokens, at, source);
+      continue;
+    }
     const bool declared = starts_line(tokens, at) && declares(tokens[at].kind, tokens[at + 2].kind);
     const bool define = tokens[at].kind == Kinds::DEFINE;
     if (!declared || !is_reserved_name(tokens[at + 1], define, source)) continue;
     const Token name = tokens[at + 1];
     const std::string_view word = source.text(name.span);
-    diagnostics
-        .report(Code::E0010, "`" + std::string(word) + "` is a word of RSL and cannot be a name")
-        .label(name.span, "choose another name");
+    report_reserved(name, source, diagnostics);
     // It is a name from here on, so no line can declare it again: this loop runs at most once per word of RSL.
-    const bool everywhere = (roles_of(name.kind) & role::name) == 0;
+    const bool everywhere = (roles_of(name.kind) & role::name) == 0 && !has_capital(word);
     for (std::size_t use = 0; use < tokens.size(); ++use)
       if (tokens[use].kind == name.kind && source.text(tokens[use].span) == word &&
           (everywhere || is_line_of_name(tokens, use)))

@@ -11,7 +11,7 @@ namespace robosync::compiler {
 // Reports such words and removes them from the tokens.
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
-// `REMEMBER end = 0`: reports a word of RSL that is declared as a name. The same spelling, in lower case, counts as that
+// `REMEMBER end = 0`, `margin BELOW 5` in a CHECK: reports a word of RSL that is declared as a name. The same spelling, in lower case, counts as that
 // name everywhere, so that the mistake is reported once.
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 

@@ -192,11 +192,32 @@ bool LexerState::negation() {
   return true;
 }
 
-// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, `FOR i IN range(3)` at the start of a line: a block, whose END would
+namespace {
+
+// The number in `= 1 TO 3` and `IN range(3)`; otherwise "3", as an example.
+std::string_view times_of_loop(std::string_view line) {
+  constexpr std::string_view kDigits = "0123456789", kBlanks = " \t";
+  for (const std::string_view begin : {"= 1 TO ", "IN 1 TO ", "FROM 1 TO ", "IN range("}) {
+    std::string_view rest = line.substr(std::min(line.find_first_not_of(kBlanks), line.size()));
+    if (!ascii::same(rest.substr(0, begin.size()), begin)) continue;
+    rest.remove_prefix(begin.size());
+    const std::string_view number = rest.substr(0, rest.find_first_not_of(kDigits));
+    rest.remove_prefix(number.size());
+    const bool whole = rest.empty() || rest.front() == ' ' || rest.front() == ')';
+    if (whole && !number.empty()) return number;
+  }
+  return "3";
+}
+
+}  // namespace
+
+// `LOOP 3 TIMES`, `FOR 3 TIMES`, `FOR i = 1 TO 3`, `FOR i IN range(3)` where a statement begins: a block, whose END would
 // otherwise close another one.
 bool LexerState::foreign_loop() {
   const bool loop = ascii::same(lexeme(), "LOOP"), each = ascii::same(lexeme(), "FOR");
-  if (!(loop || each) || (!tokens_.empty() && tokens_.back().kind != Kinds::NEWLINE)) return false;
+  const bool begins =
+      tokens_.empty() || is_one_of(tokens_.back().kind, {Kinds::NEWLINE, Kinds::DO, Kinds::ELSE});
+  if (!(loop || each) || !begins) return false;
   constexpr std::string_view in = " IN ";
   const std::string_view line = rest_of_line(cursor_);
   const std::size_t line_end = cursor_ + line.size();
@@ -217,7 +238,8 @@ bool LexerState::foreign_loop() {
     message.fix(here(), "REPEAT");
     return true;
   }
-  message.helps("write `REPEAT 3 TIMES`; to count along, use a REMEMBER");
+  message.helps("write `REPEAT " + std::string(times_of_loop(line.substr(word + name))) +
+                " TIMES`; to count along, use a REMEMBER");
   cursor_ = line_end;
   tokens_.push_back({Kinds::QUANTITY, span(cursor_, cursor_)});
   tokens_.push_back({Kinds::TIMES, span(cursor_, cursor_)});

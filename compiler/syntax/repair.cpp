@@ -77,15 +77,23 @@ Edit last_resort(const Tokens& tokens, const Attempt& failure) {
   return edit;
 }
 
+std::optional<Edit> known_mistake(const Tokens& tokens, const Attempt& failure,
+                                  const SourceFile& source, const Examples& examples,
+                                  Diagnostics& diagnostics) {
+  if (auto joined = explain_joined_command(tokens, source, failure, examples, diagnostics))
+    return joined;
+  for (const auto explain_one :
+       {explain_wrong_form, explain_misplaced_word, explain_foreign_habit, explain_habit})
+    if (auto habit = explain_one(tokens, source, failure, diagnostics)) return habit;
+  return explain_sentence(tokens, source, failure, examples, diagnostics);
+}
+
 }  // namespace
 
 void mend(Tokens& tokens, const Attempt& failure, Reader& reader, const Examples& examples,
           Diagnostics& diagnostics, Budget& budget) {
-  for (const auto explain_one :
-       {explain_wrong_form, explain_misplaced_word, explain_foreign_habit, explain_habit}) {
-    const auto habit = explain_one(tokens, reader.source(), failure, diagnostics);
-    if (!habit) continue;
-    tokens = edited(tokens, *habit);
+  if (const auto known = known_mistake(tokens, failure, reader.source(), examples, diagnostics)) {
+    tokens = edited(tokens, *known);
     return;
   }
   constexpr std::size_t readings = 3;  // the most that possible_edits() makes

@@ -1,5 +1,8 @@
 // Lines of RSL in a form that RSL lacks, as beginners write them: two words as a name, a FOR in the middle of a condition, a
 // number after BECOMES. See habits.hpp.
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "compiler/diagnostics/nearest.hpp"
@@ -31,12 +34,26 @@ public:
     if (auto edit = empty_define()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Form = std::optional<Edit> (WrongForms::*)();
-    for (const Form form :
-         {&WrongForms::name_of_words, &WrongForms::ended_condition, &WrongForms::becomes,
-          &WrongForms::once, &WrongForms::waits, &WrongForms::step, &WrongForms::text_before_more,
-          &WrongForms::stop_for, &WrongForms::item, &WrongForms::parameters, &WrongForms::at_time,
-          &WrongForms::word_behind_define, &WrongForms::counted_up, &WrongForms::words_of_state,
-          &WrongForms::block_outside})
+    for (const Form form : {&WrongForms::name_of_words,
+                            &WrongForms::ended_condition,
+                            &WrongForms::becomes,
+                            &WrongForms::once,
+                            &WrongForms::waits,
+                            &WrongForms::step,
+                            &WrongForms::text_before_more,
+                            &WrongForms::stop_for,
+                            &WrongForms::item,
+                            &WrongForms::parameters,
+                            &WrongForms::at_time,
+                            &WrongForms::word_behind_define,
+                            &WrongForms::counted_up,
+                            &WrongForms::words_of_state,
+                            &WrongForms::block_outside,
+                            &WrongForms::half_comparison,
+                            &WrongForms::within_alone,
+                            &WrongForms::value_below,
+                            &WrongForms::one_of_commands,
+                            &WrongForms::start_of_rule})
       if (auto edit = (this->*form)()) return edit;
     return std::nullopt;
   }
@@ -144,10 +161,12 @@ private:
 
   // ---- conditions
 
-  // `touch LEVEL > 4 FOR 1s OR …`: FOR is about all that is asked before it.
+  // `touch LEVEL > 4 FOR 1s OR …`: FOR is about all that is asked before it. `WAIT UNTIL touch LEVEL > 4 FOR 1s WITHIN 5s`
   std::optional<Edit> ended_condition() {
     const bool counts = is(stop_, Kinds::QUANTITY) && is(stop_ + 1, Kinds::TIMES);
-    if (!counts && !is_one_of(tokens_[stop_].kind, {Kinds::AND, Kinds::OR, Kinds::THEN}))
+    const bool ends_waiting = is(stop_, Kinds::WITHIN) && begins_with(Kinds::WAIT);
+    if (!counts && !ends_waiting &&
+        !is_one_of(tokens_[stop_].kind, {Kinds::AND, Kinds::OR, Kinds::THEN}))
       return std::nullopt;
     std::size_t first = stop_, end = 0;
     for (int depth = 0; first > 0 && !begins_question(tokens_[first - 1].kind); --first) {
@@ -172,13 +191,91 @@ private:
     return edit;
   }
 
-  // The sensor or variable before the word at `sign`.
-  std::string asked(std::size_t sign) const {
-    std::size_t first = sign;
-    while (first > begin_ && is(first - 1, Kinds::NAME))
-      --first;
-    return text(first, sign);
+  // `touch LEVEL > 3 AND < 5`
+  std::optional<Edit> half_comparison() {
+    const bool joined =
+        stop_ > begin_ + 4 && (is(stop_ - 1, Kinds::AND) || is(stop_ - 1, Kinds::OR));
+    if (!joined || !is_relation(tokens_[stop_].kind) || !is(stop_ + 1, Kinds::QUANTITY) ||
+        !is(stop_ - 2, Kinds::QUANTITY) || !is_relation(tokens_[stop_ - 3].kind) ||
+        !asks_before(stop_))
+      return std::nullopt;
+    const std::string what = asked(stop_ - 3);
+    const std::size_t first = first_asked(stop_ - 3);
+    if (what.empty() || first == 0 || !begins_comparison(tokens_[first - 1].kind))
+      return std::nullopt;
+    Diagnostic& message =
+        say(Code::E0001, tokens_[stop_].span, "what follows `{1}` is not a condition on its own",
+            "write both conditions in full: `{0} {1} {2} {3}`", text(first, stop_ - 1),
+            text(stop_ - 1), what, text(stop_, stop_ + 2));
+    if (is(stop_ - 1, Kinds::AND) && is_above(stop_ - 3) && is_below(stop_))
+      message.helps(fmt::format("or, including both numbers, `{} IS BETWEEN {} AND {}`", what,
+                                text(stop_ - 2), text(stop_ + 1)));
+    Span front = tokens_[stop_].span;
+    front.end = front.begin;
+    message.fix(front, what + " ", Applicability::likely);
+    return change(stop_, 0,
+                  Tokens(tokens_.begin() + static_cast<std::ptrdiff_t>(first),
+                         tokens_.begin() + static_cast<std::ptrdiff_t>(stop_ - 3)));
   }
+  // After a NOT or a sign, what was meant is not clear.
+  static bool begins_comparison(TokenKind kind) {
+    return begins_question(kind) || is_one_of(kind, {Kinds::AND, Kinds::OR, Kinds::OPEN});
+  }
+  bool is_above(std::size_t at) const {
+    return is(at, Kinds::GREATER) || is(at, Kinds::GREATER_EQUAL);
+  }
+  bool is_below(std::size_t at) const { return is(at, Kinds::LESS) || is(at, Kinds::LESS_EQUAL); }
+
+  // `WHEN touch LEVEL > 3 WITHIN 3s`
+  std::optional<Edit> within_alone() {
+    if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
+    std::size_t first = stop_;
+    while (first > 0 && !begins_question(tokens_[first - 1].kind))
+      if (is_one_of(tokens_[--first].kind,
+                    {Kinds::DO, Kinds::FOR, Kinds::TIMES, Kinds::THEN, Kinds::END}))
+        return std::nullopt;
+    if (first == 0 || first == stop_ ||
+        !is_one_of(tokens_[first - 1].kind, {Kinds::WHEN, Kinds::WHILE}))
+      return std::nullopt;
+    say(Code::E0001, span(stop_, stop_ + 2),
+        "`WITHIN` counts how often a condition becomes true, but this does not say how many "
+        "`TIMES`",
+        "for a condition that stays true that long, write `{0} FOR {1}`", text(first, stop_),
+        text(stop_ + 1))
+        .helps(fmt::format("to count, write `{} 2 TIMES WITHIN {}`", text(first, stop_),
+                           text(stop_ + 1)));
+    return change(stop_, 1, {{Kinds::FOR, tokens_[stop_].span}});
+  }
+
+  // `COOLDOWN`, and `3s` on the line below
+  std::optional<Edit> value_below() {
+    const bool ends =
+        stop_ > 0 && is(stop_, Kinds::NEWLINE) &&
+        is_one_of(tokens_[stop_ - 1].kind, {Kinds::COOLDOWN, Kinds::MARGIN, Kinds::PRIORITY});
+    std::size_t next = stop_;
+    while (is(next, Kinds::NEWLINE))
+      ++next;
+    if (!ends || !is(next, Kinds::QUANTITY)) return std::nullopt;
+    Span gap = tokens_[stop_ - 1].span;
+    gap.begin = gap.end;
+    gap.end = tokens_[next].span.begin;
+    Diagnostic& message =
+        say(Code::E0001, tokens_[next].span, "`{1}` belongs at the end of the line above",
+            "write `{0} {1}`", text(stop_ - 1), text(next));
+    if (source_.text(gap).find_first_of("#%") == std::string_view::npos)
+      message.fix(gap, " ", Applicability::likely);
+    return change(stop_, next - stop_);
+  }
+
+  // The first word of the sensor or variable before the word at `sign`.
+  std::size_t first_asked(std::size_t sign) const {
+    while (sign > begin_ && is(sign - 1, Kinds::NAME))
+      --sign;
+    return sign;
+  }
+
+  // The sensor or variable before the word at `sign`.
+  std::string asked(std::size_t sign) const { return text(first_asked(sign), sign); }
 
   // `touch LEVEL BECOMES 3`, `wave_detect BECOMES TRUE`
   std::optional<Edit> becomes() {
@@ -398,6 +495,69 @@ private:
         up ? "++" : "--", better)
         .fix(all, better, Applicability::likely);
     return change(statement_ + 4, 2);
+  }
+
+  // `RANDOM SAY "a" OR "b"`, `SAY "a" OR "b"`
+  std::optional<Edit> one_of_commands() {
+    const auto block = open_block();
+    const bool random = is(stop_, Kinds::RANDOM) && stop_ == statement_ && stop_ + 1 < end_;
+    const bool texts = is(stop_, Kinds::OR) && begins_with(Kinds::NAME) &&
+                       is(stop_ - 1, Kinds::STRING) && is(stop_ + 1, Kinds::STRING);
+    if (!(random || texts) || asks_before(stop_) || !block ||
+        is_one_of(tokens_[*block].kind, {Kinds::TEST, Kinds::CHECK, Kinds::MOTION}))
+      return std::nullopt;
+    const std::size_t end = statement_end();
+    const std::vector<std::string> commands = alternatives(random ? stop_ + 1 : statement_, end);
+    const std::string help =
+        commands.size() == 2
+            ? fmt::format(
+                  "write `PICK ONE`, `OPTION 50%`, `{}`, `OPTION 50%`, `{}` and `END`, "
+                  "each on its own line",
+                  commands[0], commands[1])
+            : "write `PICK ONE` and, for each command, `OPTION` with its chance, such as `OPTION "
+              "50%`";
+    report(Code::E0001,
+           random ? "`RANDOM` picks a number: `RANDOM(1, 6)`"
+                  : "`OR` joins conditions; a command has one text",
+           tokens_[stop_].span)
+        .helps(random ? "to do one of several things, " + help : help);
+    return change(statement_, end - statement_,
+                  {missing(Kinds::LOG, statement_), missing(Kinds::STRING, statement_)});
+  }
+
+  // The commands between the ORs. A text alone is the text of the first command.
+  std::vector<std::string> alternatives(std::size_t first, std::size_t end) const {
+    std::size_t words = first;
+    while (words < end && !is_one_of(tokens_[words].kind, {Kinds::STRING, Kinds::OR}))
+      ++words;
+    const std::string verb = text(first, words) + " ";
+    std::vector<std::string> found;
+    for (std::size_t at = first; at <= end; ++at) {
+      if (at < end && !is(at, Kinds::OR)) continue;
+      found.push_back((first > words && is(first, Kinds::STRING) ? verb : "") + text(first, at));
+      first = at + 1;
+    }
+    return found;
+  }
+
+  // `START`, and commands on the lines below
+  std::optional<Edit> start_of_rule() {
+    const auto block = open_block();
+    const std::size_t behind = stop_ + (is(stop_ + 1, Kinds::COLON) ? 2 : 1);
+    if (stop_ != begin_ || !is(stop_, Kinds::START) || end_ != behind ||
+        (block && !is(*block, Kinds::BEHAVIOR)))
+      return std::nullopt;
+    std::size_t next = end_;
+    while (is(next, Kinds::NEWLINE))
+      ++next;
+    if (next >= tokens_.size() || is(next, Kinds::DO)) return std::nullopt;
+    const Span here = span(stop_, behind);
+    say(Code::E0001, here, "a rule cannot begin with `{0}`",
+        "to act once after the start, write `AT START DO`, and `END` after the commands",
+        text(stop_))
+        .fix(here, "AT START DO", Applicability::likely);
+    return change(stop_, behind - stop_,
+                  {missing(Kinds::AT, stop_), tokens_[stop_], missing(Kinds::DO, stop_)});
   }
 
   // ---- items

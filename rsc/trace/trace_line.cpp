@@ -32,9 +32,11 @@ std::string command_words(const EventReader& reader) {
   return reader.is_carried_out() ? text : text + " (not done: a value is unknown)";
 }
 
-// Only a rule with ELSE has two sides.
+// " its ELSE side": only a rule with ELSE has two sides.
 std::string side(const EventReader& reader) {
-  return reader.value(0) == 0 ? "ELSE" : "DO";
+  const vm::Rule* const rule = reader.rule();
+  if (reader.value(0) == 0) return " its ELSE side";
+  return rule == nullptr || rule->else_response != vm::kNoIndex ? " its DO side" : "";
 }
 
 std::string interrupt_words(const EventReader& reader) {
@@ -50,7 +52,7 @@ std::string denial_words(const EventReader& reader) {
   if (reader.event().object == link::kStop) return "the robot is stopped";
   if (!reader.interrupts_itself())
     return fmt::format("{} has an actuator it needs", reader.behavior_name(reader.event().object));
-  return reader.is_only_rule() ? "it is still running"
+  return reader.is_only_rule() ? "its response is still running"
                                : "it, or another rule of its behaviour, is still running";
 }
 
@@ -58,12 +60,11 @@ std::string rule_words(const EventReader& reader) {
   const std::string rule = reader.rule_name();
   switch (reader.event().kind) {
     case EventKind::fire:
-      return fmt::format("{} triggers its {} side", rule, side(reader));
+      return fmt::format("{} triggers{}", rule, side(reader));
     case EventKind::win:
-      return fmt::format("{} starts its {} side", rule, side(reader));
+      return fmt::format("{} starts{}", rule, side(reader));
     case EventKind::lose:
-      return fmt::format("{} does not start its {} side: {}", rule, side(reader),
-                         denial_words(reader));
+      return fmt::format("{} does not start{}: {}", rule, side(reader), denial_words(reader));
     case EventKind::interrupt:
       return interrupt_words(reader);
     case EventKind::finished:

@@ -303,7 +303,7 @@ TEST_CASE("run shows what happened, in words and as a trace") {
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit == 0);
   CHECK_THAT(outcome.out, Contains("   1.000 s  touch LEVEL = 2\n") &&
-                              Contains("rule at line 1 starts its DO side") &&
+                              Contains("rule at line 1 starts") &&
                               Contains("left_arm MOVE SLOWLY TO 90"));
   const std::vector<json> trace = json_lines(robot.read("visit.jsonl"));
   REQUIRE(!trace.empty());

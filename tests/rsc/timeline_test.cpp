@@ -149,7 +149,8 @@ TEST_CASE("a step tells in words what happened in it") {
   for (const json& one : page.run_of.at("steps"))
     if (one.at(0) == bar.at("step")) step = one;
   CHECK(step.at(1) == "touch LEVEL = 3");
-  CHECK_THAT(step.dump(), Contains("triggers its DO side") && Contains("arm MOVE SLOWLY TO 90deg"));
+  CHECK_THAT(step.dump(), Contains("strong, rule at line 12 triggers\"") &&
+                              Contains("arm MOVE SLOWLY TO 90deg"));
 }
 
 TEST_CASE("the page is whole by itself, and what a program says stays text in it") {

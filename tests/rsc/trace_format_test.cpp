@@ -71,19 +71,19 @@ TEST_CASE("rules are named by their line and behaviour") {
   CHECK(fire.at("behavior") == "shy");
   CHECK(fire.at("side") == "DO");
   CHECK(as_words(event(EventKind::fire, rule_of(plain), 0, {1})) ==
-        "   1.020 s  rule at line 1 triggers its DO side");
+        "   1.020 s  rule at line 1 triggers");
   CHECK_FALSE(as_json(event(EventKind::fire, rule_of(plain), 0, {0})).contains("behavior"));
   CHECK(as_words(event(EventKind::lose, rule_of(plain), named, {1})) ==
-        "   1.020 s  rule at line 1 does not start its DO side: behaviour shy has an actuator it "
+        "   1.020 s  rule at line 1 does not start: behaviour shy has an actuator it "
         "needs");
   CHECK(as_words(event(EventKind::lose, rule_of(plain), plain, {1})) ==
-        "   1.020 s  rule at line 1 does not start its DO side: it is still running");
+        "   1.020 s  rule at line 1 does not start: its response is still running");
   CHECK(as_words(event(EventKind::interrupt, rule_of(plain), plain)) ==
         "   1.020 s  rule at line 1 gives up what it was doing");
   CHECK(as_json(event(EventKind::interrupt, rule_of(named), plain)).at("by") ==
         "the rule at line 1");
   CHECK(as_words(event(EventKind::lose, rule_of(plain), link::kStop, {1})) ==
-        "   1.020 s  rule at line 1 does not start its DO side: the robot is stopped");
+        "   1.020 s  rule at line 1 does not start: the robot is stopped");
   CHECK(as_words(event(EventKind::interrupt, rule_of(plain), link::kStop)) ==
         "   1.020 s  rule at line 1 is interrupted by a person's stop");
   CHECK(as_json(event(EventKind::interrupt, rule_of(named), link::kStop)).at("by") ==

@@ -91,6 +91,44 @@ TEST_CASE("every message has a place, and a fix mends what it names", "[golden]"
   }
 }
 
+namespace {
+
+Fix first_fix(const std::string& program) {
+  const Result result = compile_text(program, common_robot());
+  REQUIRE(result.diagnostics.errors() == 1);
+  const Diagnostic& error = result.diagnostics.all().front();
+  REQUIRE(!error.fixes.empty());
+  return error.fixes.front();
+}
+
+}  // namespace
+
+TEST_CASE("the fix of a line as pupils write it gives a whole program, and is never certain") {
+  for (const std::string program : {
+           "WHEN touch LEVEL > 3 DO\n  LOG \"a\", SHOW face happy\nEND\n",
+           "WHEN touch LEVEL > 3 AND < 5 DO\n  LOG \"a\"\nEND\n",
+           "WHEN touch LEVEL > 3\nCOOLDOWN\n3s\nDO LOG \"a\"\nEND\n",
+           "START\n  LOG \"a\"\nEND\n",
+           "AT START DO\n  WAIT UNTIL touch LEVEL > 3 FOR 2s WITHIN 5s\nEND\n",
+           "STATE mood: happy sad\nAT START DO\n  SET mood TO sad\n  WAIT 1s\n  SET mood TO happy\n"
+           "END\n",
+           "AT START DO\n  MOVE left_arm 90 degrees\nEND\n",
+       }) {
+    INFO(program);
+    const Fix fix = first_fix(program);
+    CHECK(fix.applicability == Applicability::likely);
+    std::string mended = program;
+    mended.replace(fix.span.begin, fix.span.end - fix.span.begin, fix.replacement);
+    INFO(mended);
+    CHECK(compile_text(mended, common_robot()).diagnostics.errors() == 0);
+  }
+}
+
+TEST_CASE("after TO, a unit apart from its number has one meaning") {
+  const Fix fix = first_fix("AT START DO\n  MOVE left_arm TO 90 degrees\nEND\n");
+  CHECK(fix.applicability == Applicability::certain);
+}
+
 // `arm` may be one of the arms: the fix would move both.
 TEST_CASE(
     "a group is never the certain fix of a word that one of its members has, or of the singular") {
