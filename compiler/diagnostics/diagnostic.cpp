@@ -192,14 +192,14 @@ std::size_t uses_of(std::string_view word, const SourceMap& sources) {
   return found;
 }
 
-// May the word that a fix gives be the misspelt one? A name, if it is nowhere else; a text of robot.json, such as the name of a
-// sound, if no program uses it.
+// May the word that a fix gives be the misspelt one? A name of a program, if nothing uses it. A name of robot.json is right; but a
+// text, such as the name of a sound, only if a program uses it, too.
 bool is_doubtful(const Diagnostic& diagnostic, const SourceMap& sources) {
   const std::string& word = diagnostic.fixes.front().replacement;
-  const bool has_json = sources.size() > kConfigurationFile && !word.empty();
-  const std::size_t in_json = has_json ? uses_in(sources.file(kConfigurationFile).text(), word) : 0;
+  const bool in_json = sources.size() > kConfigurationFile && !word.empty() &&
+                       uses_in(sources.file(kConfigurationFile).text(), word) > 0;
   const std::size_t uses = uses_of(word, sources);
-  return diagnostic.code == Code::E0502 ? in_json > 0 && uses == 0 : in_json + uses == 1;
+  return diagnostic.code == Code::E0502 ? in_json && uses == 0 : !in_json && uses == 1;
 }
 
 }  // namespace

@@ -76,10 +76,11 @@ public:
   std::uint8_t send(link::MessageType type, std::span<const std::byte> payload = {});
   // The next reply. Events, logs and faults that arrive meanwhile are queued for next_unasked().
   std::optional<Message> next_reply(Milliseconds timeout);
-  // Handles the reply `busy`, once for each request: says hello (and switches the trace on again, which a hello ends), because the board may have restarted, or the host that had the
-  // line may be idle. If the board is still busy with a process of this computer that does not exist any more (host_name.hpp),
-  // the line is taken over, once: a user who interrupts an upload may start another at once. Otherwise throws Refused: the board
-  // gives the line free when nothing has come from its host for three seconds.
+  // Handles the reply `busy`, once for each request: says hello, because the board may have restarted, or the host that had the
+  // line may be idle. A hello ends the trace, so it is switched on again. If the board is still busy with a process of this
+  // computer that does not exist any more (host_name.hpp), the line is taken over, once: a user who interrupts an upload may
+  // start another at once. Otherwise throws Refused: the board gives the line free when nothing has come from its host for three
+  // seconds.
   void reopen(const Message& busy, bool& tried);
   // The next event, log line or fault record.
   std::optional<Message> next_unasked(Milliseconds timeout);

@@ -214,7 +214,8 @@ FixTally try_fix_of_robot(const Example& example, const std::string& robot,
   tally.wrong = 1;
   const std::string program = fixed(example.program, result);
   const std::string mended = fixed(robot, result, kConfigurationFile);
-  if (program == example.program && mended == robot) return tally;
+  // A fix of the program alone takes a name from robot.json, whose names count as right: the robot does the same by that name.
+  if (mended == robot) return tally;
   tally.with_fix = 1;
   Result again = compiled(program, mended);
   const bool wrong = again.image.empty();

@@ -138,16 +138,17 @@ TEST_CASE("the state has the values of all inputs, part by part") {
   Robot robot;
   tool::Client client(robot);
   std::string text;
-  constexpr std::size_t kMany = 40;
+  constexpr std::size_t kMany = 32;  // with the channel, more than one part holds
   for (std::size_t i = 0; i < kMany; ++i)
     text += "REMEMBER v" + std::to_string(i) + " = " + std::to_string(i) + "\n";
-  text += "WHEN touch LEVEL > 5 DO\n  SET v0 TO 7\n  SET v39 TO v38 + 1\nEND\n";
+  text += "WHEN touch LEVEL > 5 DO\n  SET v0 TO 7\n  SET v31 TO v30 + 1\nEND\n";
   CHECK(client.state(0).count == 0);
   const tool::Program program = test::compile(text);
   REQUIRE(upload(client, program.bytes()).running == 1);
   REQUIRE(client.feed({.channel = 0, .at_us = 0, .value = 6000}).error == link::FeedError::none);
   robot.run(50);
   const std::size_t inputs = 1 + program.image().variables.size();
+  REQUIRE(inputs == 1 + kMany);
   std::vector<std::int32_t> values;
   while (values.size() < inputs) {
     const link::State state = client.state(static_cast<std::uint32_t>(values.size()));
