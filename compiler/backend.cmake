@@ -25,6 +25,17 @@ embed(${PROJECT_SOURCE_DIR}/stdlib rsl compiler/modules.hpp ModuleText module_te
       ${module_texts})
 
 target_sources(robosync_compiler_small PRIVATE
+  compiler.cpp
+  lints.cpp
+  modules.cpp
+  project.cpp
+  reading.cpp
+  codegen/costly_rules.cpp
+  codegen/emit.cpp
+  codegen/records.cpp
+  codegen/rules.cpp
+  codegen/tables.cpp
+  codegen/verify_image.cpp
   config/actuators.cpp
   config/algorithms.cpp
   config/boards.cpp
@@ -42,49 +53,6 @@ target_sources(robosync_compiler_small PRIVATE
   config/sensors.cpp
   config/values.cpp
   config/wiring.cpp
-  sema/behaviors.cpp
-  sema/defines.cpp
-  sema/follow.cpp
-  sema/functions.cpp
-  sema/limits.cpp
-  sema/lints.cpp
-  sema/waiting_commands.cpp
-  sema/lists.cpp
-  sema/motions.cpp
-  sema/number_lists.cpp
-  sema/perform.cpp
-  sema/texts.cpp
-  sema/timers.cpp
-  sema/variables.cpp
-  codegen/costly_rules.cpp
-  codegen/records.cpp
-  codegen/tables.cpp
-  units/units.cpp)
-target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
-target_sources(robosync_compiler PRIVATE
-  compiler.cpp
-  lints.cpp
-  modules.cpp
-  project.cpp
-  reading.cpp
-  ${board_texts}
-  ${device_texts}
-  ${module_texts}
-  ir/expression.cpp
-  ir/fact.cpp
-  ir/program.cpp
-  sema/analyze.cpp
-  sema/commands.cpp
-  sema/misread.cpp
-  sema/unknown_verbs.cpp
-  sema/whole_commands.cpp
-  sema/conditions.cpp
-  sema/condition_lints.cpp
-  sema/expressions.cpp
-  sema/names.cpp
-  sema/quantities.cpp
-  sema/rules.cpp
-  sema/statements.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp
   optimize/optimize.cpp
@@ -93,17 +61,49 @@ target_sources(robosync_compiler PRIVATE
   optimize/share.cpp
   optimize/simplify.cpp
   optimize/variable_facts.cpp
+  sema/analyze.cpp
+  sema/behaviors.cpp
+  sema/commands.cpp
+  sema/conditions.cpp
+  sema/defines.cpp
+  sema/follow.cpp
+  sema/functions.cpp
+  sema/limits.cpp
+  sema/lints.cpp
+  sema/lists.cpp
+  sema/motions.cpp
+  sema/number_lists.cpp
+  sema/perform.cpp
+  sema/rules.cpp
+  sema/texts.cpp
+  sema/timers.cpp
+  sema/variables.cpp
+  sema/waiting_commands.cpp
+  units/units.cpp)
+target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
+target_sources(robosync_compiler PRIVATE
+  ${board_texts}
+  ${device_texts}
+  ${module_texts}
+  ir/expression.cpp
+  ir/fact.cpp
+  ir/program.cpp
+  sema/misread.cpp
+  sema/unknown_verbs.cpp
+  sema/whole_commands.cpp
+  sema/condition_lints.cpp
+  sema/expressions.cpp
+  sema/names.cpp
+  sema/quantities.cpp
+  sema/statements.cpp
   codegen/code.cpp
   codegen/expression_emitter.cpp
-  codegen/emit.cpp
   codegen/operations.cpp
-  codegen/response_emitter.cpp
-  codegen/rules.cpp
-  codegen/verify_image.cpp)
+  codegen/response_emitter.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # As in the front end, the code that words diagnostics is optimised for size.
 if(NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
-    sema/waiting_commands.cpp sema/whole_commands.cpp
+    sema/whole_commands.cpp
     PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

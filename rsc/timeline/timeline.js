@@ -100,7 +100,7 @@ function drawBars(lane) {
   // What lasts when its command is done: a thin bar, up to the next command.
   const lasting = lane.of.bars.filter(bar => bar.until > bar.to).map(bar => ({...bar, from: bar.to, to: bar.until, bar}));
   drawSpans(lane, lasting, (rest, x, width) => {
-    const shape = element("rect", {x, y: lane.height - 10, width, height: 6, class: "bar lasting", ...paint(rest.behavior)});
+    const shape = element("rect", {x, y: lane.height - 10, width, height: 6, class: "lasting", ...paint(rest.behavior)});
     lane.svg.append(selectable(shape, rest.bar));
     label(lane, x + 4, lane.height - 12, width - 6, rest.text);
   });

@@ -79,7 +79,9 @@ private:
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
   void note_trip(unsigned number);
-  bool is_tripped(unsigned number) const { return !tripped_.empty() && tripped_.has(number); }
+  [[gnu::always_inline]] bool is_tripped(const vm::Rule& rule) const {
+    return !tripped_.empty() && tripped_.has(number_of(rule));
+  }
   bool has_ever_tripped(unsigned number) const;
   std::span<const vm::Rule> rules() const { return {first_rule_, end_rule_}; }
   kernel::Time next_look();

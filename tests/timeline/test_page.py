@@ -103,6 +103,7 @@ class Page(unittest.TestCase):
         self.assertGreater(len(examples), 10)
         shown = [self.show(example) for example in examples]
         documents = wide_doms([page for page, _ in shown], self.folder)
+        self.assertTrue(any(count(document, "lasting") for document in documents))
         for example, (_, trace), document in zip(examples, shown, documents, strict=True):
             with self.subTest(example.name):
                 kinds = [event["event"] for event in trace]
