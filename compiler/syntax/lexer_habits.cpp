@@ -395,7 +395,7 @@ std::string_view LexerState::word_before_brace() const {
 
 namespace {
 
-bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
+bool is_among(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::any_of(words, [word](auto one) { return ascii::same(word, one); });
 }
 
@@ -420,7 +420,7 @@ std::string_view line_with(std::string_view first) {
 // In `function wave() {` the word is the mistake.
 void LexerState::opening_brace() {
   const std::string_view first = word_before_brace();
-  const bool reported = has_brace_ || is_one_of(first, kForeignDefines);
+  const bool reported = has_brace_ || is_among(first, kForeignDefines);
   if (!reported)
     report(Code::E0002, "RSL has no braces: a block ends with `END`")
         .label(here())
