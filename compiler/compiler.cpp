@@ -43,14 +43,18 @@ bool is_clash_with_module(const Diagnostic& one) {
 
 // A name of the program that a module has too: names the module. What is wrong with that name in the module is a consequence.
 Diagnostics without_clashes(const Diagnostics& diagnostics, const SourceMap& sources) {
+  constexpr std::size_t kMostClashes = 20;  // each is looked for in every message
+  std::vector<std::pair<FileId, std::string>> clashes;
+  for (const Diagnostic& one : diagnostics.all())
+    if (clashes.size() < kMostClashes && is_clash_with_module(one)) {
+      const Span other = one.labels[1].span;
+      clashes.emplace_back(other.file, "`" + std::string(sources.text(other)) + "`");
+    }
   const auto quotes_clash = [&](const Diagnostic& one) {
     if (one.code == Code::E0101 || one.labels.empty()) return false;
-    return std::ranges::any_of(diagnostics.all(), [&](const Diagnostic& clash) {
-      if (!is_clash_with_module(clash)) return false;
-      const Span other = clash.labels[1].span;
-      const std::string name = "`" + std::string(sources.text(other)) + "`";
-      return one.labels.front().span.file == other.file &&
-             one.message.find(name) != std::string::npos;
+    return std::ranges::any_of(clashes, [&](const auto& clash) {
+      const auto& [file, name] = clash;
+      return one.labels.front().span.file == file && one.message.find(name) != std::string::npos;
     });
   };
   Diagnostics result;

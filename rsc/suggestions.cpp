@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -110,6 +111,7 @@ std::string instead_of_verb(std::string_view word) {
                        word);
   if (word.ends_with(".rsb")) return fmt::format("; write `rsc run {}`", word);
   std::vector<std::string> verbs;
+  verbs.reserve(std::size(kVerbs));
   for (const Verb& verb : kVerbs)
     verbs.emplace_back(verb.name);
   const auto near = compiler::nearest(word, verbs);
