@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -62,12 +63,14 @@ private:
     }
   }
 
-  // One of its blocks runs, or none.
+  // Exactly one of its blocks runs: an IF without an ELSE has an empty one.
   void branch(const ir::Statement& statement, Waiting& waiting) {
     const Waiting before = waiting;
+    bool first = true;
     for_each_block(statement, [&](const ir::Block& block) {
       Waiting after = before;
       walk(block, after);
+      if (std::exchange(first, false)) waiting = {};
       waiting.merge(after);
     });
   }
