@@ -45,10 +45,15 @@ bool TextBuilder::add(const ast::Argument& part) {
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
     value = expressions_.operand({word->name, nullptr}, word->name.span);
   }
+  return add(std::move(value));
+}
+
+bool TextBuilder::add(Typed value) {
   if (value.type == Type::word) return add_word(std::move(value));
   value = expressions_.number_of(std::move(value));
   if (!value.is_number()) return false;
-  add(std::move(value));
+  append(place_for(value.unit != nullptr ? *value.unit : canonical_unit(vm::Dimension::number)));
+  values_.push_back(std::move(value.code));
   return true;
 }
 
@@ -81,11 +86,6 @@ bool TextBuilder::report_second(Span span) {
       .label(span, "this is a second one")
       .helps("write a statement for each");
   return false;
-}
-
-void TextBuilder::add(Typed number) {
-  append(place_for(number.unit != nullptr ? *number.unit : canonical_unit(vm::Dimension::number)));
-  values_.push_back(std::move(number.code));
 }
 
 }  // namespace robosync::compiler

@@ -18,8 +18,7 @@ public:
   // False after a mistake, which has been reported, and in a DEFINE that nothing runs.
   bool add(const ast::Argument& part);
   bool add(std::string_view text, Span span);
-
-  void add(Typed number);
+  bool add(Typed value);
 
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] std::vector<Expression>& values() { return values_; }
