@@ -52,8 +52,8 @@ constexpr std::string_view kOwnLine = "write each command on its own line: they 
                                                      const Attempt& failure,
                                                      Diagnostics& diagnostics);
 
-// Lines that only the robot's names tell from other mistakes (robot_lines.cpp). `SAY "a", SHOW eyes happy`: looks like a wrong text,
-// so it comes before the others.
+// Lines that only the robot's names tell from other mistakes (robot_lines.cpp). `SAY "a", SHOW eyes happy`: looks like a wrong
+// text, so it comes before the others.
 [[nodiscard]] std::optional<Edit> explain_joined_command(const Tokens& tokens,
                                                          const SourceFile& source,
                                                          const Attempt& failure,
