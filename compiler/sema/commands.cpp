@@ -332,23 +332,6 @@ bool takes_its_words(const ir::Command& command) {
   return command.word && command.word->param == vm::Param::for_;
 }
 
-// A value counts as one word, however many its place lists.
-std::string with_short_places(std::string text, std::size_t values) {
-  for (; values > 0; --values)
-    if (const auto place = find_place(text)) text.replace(place->begin, place->size, "0");
-  return text;
-}
-
-vm::Value words_of(std::string_view text) {
-  constexpr std::size_t kMost = 1000;
-  constexpr std::string_view kBlanks = " \t\n\v\f\r";
-  std::size_t words = 0;
-  for (std::size_t at = text.find_first_not_of(kBlanks);
-       at != std::string_view::npos && words < kMost; ++words)
-    at = text.find_first_not_of(kBlanks, text.find_first_of(kBlanks, at));
-  return static_cast<vm::Value>(words);
-}
-
 // Checks a constant against the actuator's range.
 bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& number,
                  Diagnostics& diagnostics) {
@@ -621,8 +604,8 @@ bool Commands::add_text(const Recipient& to, const Given& given, ir::Command& re
   if (to.verb.texts == Texts::any) {
     const bool speaks = to.actuator.word_length > 0 && to.verb.has(vm::Param::for_);
     if (speaks && !is_given(result, vm::Param::for_))
-      put(text, vm::Param::for_,
-          to.actuator.word_length * words_of(with_short_places(text, given.values.size())), result);
+      put(text, vm::Param::for_, to.actuator.word_length * spoken_words(text, given.values.size()),
+          result);
     else
       put(text, vm::Param::item, 0, result);
     return true;

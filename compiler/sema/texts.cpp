@@ -88,4 +88,16 @@ bool TextBuilder::report_second(Span span) {
   return false;
 }
 
+vm::Value spoken_words(std::string text, std::size_t values) {
+  for (; values > 0; --values)
+    if (const auto place = find_place(text)) text.replace(place->begin, place->size, "0");
+  constexpr std::size_t kMost = 1000;
+  constexpr std::string_view kBlanks = " \t\n\v\f\r";
+  std::size_t words = 0;
+  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string::npos && words < kMost;
+       ++words)
+    at = text.find_first_not_of(kBlanks, text.find_first_of(kBlanks, at));
+  return static_cast<vm::Value>(words);
+}
+
 }  // namespace robosync::compiler

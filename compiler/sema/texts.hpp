@@ -35,4 +35,7 @@ private:
   std::vector<Expression> values_;
 };
 
+// How many words it takes to say such a text; each of its values counts as one.
+[[nodiscard]] vm::Value spoken_words(std::string text, std::size_t values);
+
 }  // namespace robosync::compiler
