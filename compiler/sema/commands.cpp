@@ -620,7 +620,7 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
     const auto says = std::ranges::find(to.actuator.verbs, Texts::any, &VerbConfig::texts);
-    to.diagnostics.report(Code::E0505, "`" + verb + "` plays a file, and cannot say numbers")
+    to.diagnostics.report(Code::E0505, "`" + verb + "` plays a file, and cannot say values")
         .label(given.text_span)
         .helps(says != to.actuator.verbs.end() ? "to speak, use `" + says->name + "`"
                                                : "the device \"speaker\" can: it says any text");
@@ -628,9 +628,8 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   }
   if (given.values.size() > vm::kTextParams.size()) {
     to.diagnostics
-        .report(Code::E0407, "this text has " + std::to_string(given.values.size()) +
-                                 " numbers; `" + verb + "` takes at most " +
-                                 std::to_string(vm::kTextParams.size()))
+        .report(Code::E0407, "this text has " + std::to_string(given.values.size()) + " values; `" +
+                                 verb + "` takes at most " + std::to_string(vm::kTextParams.size()))
         .label(given.text_span)
         .helps("put the rest in another `" + verb + "`");
     return false;
