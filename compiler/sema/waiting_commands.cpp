@@ -75,7 +75,8 @@ private:
     });
   }
 
-  // A round that adds a command is too much after a few rounds; any other round soon changes nothing.
+  // A round that adds a command is too much after a few rounds; any other round soon changes nothing. How often a loop runs that
+  // has no constant count is not known: twice, as almost all do.
   void repeat(const ir::Repeat& loop, Waiting& waiting) {
     const vm::Value rounds = ir::constant_count(loop).value_or(2 * vm::kScale) / vm::kScale;
     for (vm::Value round = 0; round < rounds && !reported_; ++round) {

@@ -269,7 +269,7 @@ private:
   std::optional<Edit> commands_with_and() {
     if (!is(stop_, Kinds::AND) || !is_whole_command()) return std::nullopt;
     report(Code::E0001, "`AND` joins conditions, not commands", tokens_[stop_].span)
-        .helps(std::string(kOwnLine))
+        .helps(kOwnLine)
         .helps("if several actuators do the same, make them a group in robot.json");
     return change(stop_, end_of_command(stop_) - stop_);
   }
@@ -279,8 +279,7 @@ private:
     if (!is_command() || has(statement_, stop_, Kinds::WITH)) return std::nullopt;
     for (std::size_t at = statement_; at < stop_ && !is(at, Kinds::STRING); ++at) {
       if (!is(at, Kinds::COMMA) || !is(at + 1, Kinds::NAME)) continue;
-      report(Code::E0001, "a comma cannot join two commands", tokens_[at].span)
-          .helps(std::string(kOwnLine));
+      report(Code::E0001, "a comma cannot join two commands", tokens_[at].span).helps(kOwnLine);
       return change(at, end_of_command(at) - at);
     }
     return std::nullopt;
