@@ -77,6 +77,8 @@ TEST_CASE("each part of a robot.json has its place") {
         "\n"
         "  \"board\": \"microbit-v2\"\n"
         "}\n");
+  CHECK(styled("{\"a\":1,\n\n\"b\":2,\n\"c\":3}") ==
+        "{\n  \"a\": 1,\n\n  \"b\": 2,\n  \"c\": 3\n}\n");
   CHECK(styled("{}") == "{}\n");
   CHECK(styled("[1,2 , {}]") == "[1, 2, {}]\n");
   CHECK(styled("7") == "7\n");
