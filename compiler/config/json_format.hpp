@@ -1,4 +1,4 @@
-// The one style of robot.json: a line for each part of the robot, in the order of the text; parts with the same keys form a table.
+// The one style of robot.json: a line for each part of the robot, in the text's order; parts with the same keys form a table.
 // A value that is too long for its line continues on the next one, aligned behind its bracket.
 //
 // Only white space changes. Blank lines between the parts stay, repeated ones become one.

@@ -288,9 +288,9 @@ void check_stale_after(const json::Value* channels, const SensorConfig& sensor,
                                 "every {} ms",
                                 channel.stale_ms, channel.period_ms))
             .label(key.value.span)
-            .helps(fmt::format("use a `stale_after` of at least {}ms, twice the time between two "
-                               "readings, or a faster `rate`",
-                               2 * channel.period_ms));
+            .helps(fmt::format("use a `stale_after` of {}ms, twice the time between two readings, "
+                               "or a faster `rate`",
+                               std::min(2 * channel.period_ms, UINT16_MAX)));
   }
 }
 

@@ -192,8 +192,8 @@ std::size_t uses_of(std::string_view word, const SourceMap& sources) {
   return found;
 }
 
-// May the word that a fix gives be the misspelt one? A name of a program, if nothing uses it. A name of robot.json is right; but a
-// text, such as the name of a sound, only if a program uses it, too.
+// May the word that a fix gives be the misspelt one? A name of a program, if nothing else uses it. A name of robot.json is right;
+// but a text (E0502), such as the name of a sound, only if a program uses it, too.
 bool is_doubtful(const Diagnostic& diagnostic, const SourceMap& sources) {
   const std::string& word = diagnostic.fixes.front().replacement;
   const bool in_json = sources.size() > kConfigurationFile && !word.empty() &&

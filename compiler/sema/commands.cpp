@@ -190,7 +190,7 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
     }
     Given given = is_chosen(i)
                       ? Given{&command.arguments[i], {}, {}, false, chosen_->text, chosen_->span}
-                      : evaluate(command.arguments[i]);
+                      : evaluate(command.arguments[i], says_any_text(command.verb.text));
     good = good && (!given.is_number || given.number.is_number());
     result.push_back(std::move(given));
   }
@@ -227,7 +227,7 @@ Commands::Given Commands::put_together(const ast::Command& command, std::size_t 
 }
 
 // A single word belongs to the actuator, unless only the program knows it.
-Commands::Given Commands::evaluate(const ast::Argument& argument) {
+Commands::Given Commands::evaluate(const ast::Argument& argument, bool says_any_text) {
   Given given{&argument, param_of(argument), {}, false, std::nullopt, argument.span};
   if (const auto* text = std::get_if<ast::Text>(&argument.value)) given.text = text->text;
   if (const auto* word = std::get_if<ast::Word>(&argument.value)) {
@@ -239,8 +239,25 @@ Commands::Given Commands::evaluate(const ast::Argument& argument) {
                     std::holds_alternative<ast::Amount>(argument.value) ||
                     (alone != nullptr && !given.text && !is_known_word(alone->name.text) &&
                      names_a_number(alone->name));
-  if (given.is_number) given.number = evaluate_number(argument);
+  if (!given.is_number) return given;
+  Typed value = evaluate_value(argument);
+  if (value.type != Type::word || !says_any_text ||
+      argument.preposition != ast::Preposition::none) {
+    given.number = expressions_.number_of(std::move(value));
+    return given;
+  }
+  TextBuilder word(expressions_, diagnostics_);
+  if (!word.add(std::move(value))) return given;
+  given.is_number = false;
+  given.text = word.text();
+  given.values = std::move(word.values());
   return given;
+}
+
+bool Commands::says_any_text(std::string_view verb) const {
+  return std::ranges::any_of(names_.able_to(verb), [&](std::size_t actuator) {
+    return robot_.actuators[actuator].find_verb(verb)->texts == Texts::any;
+  });
 }
 
 bool Commands::is_known_word(std::string_view word) const {
@@ -271,11 +288,11 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
   return std::nullopt;
 }
 
-Typed Commands::evaluate_number(const ast::Argument& argument) {
+Typed Commands::evaluate_value(const ast::Argument& argument) {
   if (const auto* amount = std::get_if<ast::Amount>(&argument.value))
-    return amount->value ? expressions_.number(*amount->value) : Typed{};
+    return amount->value ? expressions_.any(*amount->value) : Typed{};
   if (const auto* word = std::get_if<ast::Word>(&argument.value))
-    return expressions_.number_of(expressions_.operand({word->name, nullptr}, word->name.span));
+    return expressions_.operand({word->name, nullptr}, word->name.span);
   diagnostics_.report(Code::E0505, "this must be a number, not a text").label(argument.span);
   return {};
 }
@@ -313,16 +330,6 @@ void put(const std::string& name, vm::Param param, vm::Value value, ir::Command&
 // Speech takes as long as its words, unless FOR gives another time.
 bool takes_its_words(const ir::Command& command) {
   return command.word && command.word->param == vm::Param::for_;
-}
-
-vm::Value words_of(std::string_view text) {
-  constexpr std::size_t kMost = 1000;
-  constexpr std::string_view kBlanks = " \t\n\v\f\r";
-  std::size_t words = 0;
-  for (std::size_t at = text.find_first_not_of(kBlanks);
-       at != std::string_view::npos && words < kMost; ++words)
-    at = text.find_first_not_of(kBlanks, text.find_first_of(kBlanks, at));
-  return static_cast<vm::Value>(words);
 }
 
 // Checks a constant against the actuator's range.
@@ -382,11 +389,12 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
   const std::string verbs = param == vm::Param::by ? verb_by(actuator, number.dimension()) : "";
   if (!verbs.empty())
     d.helps(verbs + " takes " + std::string(dimension_phrase(number.dimension())));
-  if (number.digits.empty() && number.dimension() == vm::Dimension::number && verbs.empty())
+  if (number.digits.empty() && number.dimension() == vm::Dimension::number && verbs.empty()) {
+    const bool is_source = number.source.size() == number.span.end - number.span.begin;
     d.helps("multiplied by a unit, a number becomes " +
             std::string(dimension_phrase(unit.dimension)) + ": `" +
-            (number.source.empty() ? "…" : number.source) + " * 1" + std::string(unit.spelling) +
-            "`");
+            (is_source ? number.source : "(…)") + " * 1" + std::string(unit.spelling) + "`");
+  }
   if (number.digits.empty() || !verbs.empty()) return;
   const std::string mended = number.digits + std::string(unit.spelling);
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
@@ -596,7 +604,8 @@ bool Commands::add_text(const Recipient& to, const Given& given, ir::Command& re
   if (to.verb.texts == Texts::any) {
     const bool speaks = to.actuator.word_length > 0 && to.verb.has(vm::Param::for_);
     if (speaks && !is_given(result, vm::Param::for_))
-      put(text, vm::Param::for_, to.actuator.word_length * words_of(text), result);
+      put(text, vm::Param::for_, to.actuator.word_length * spoken_words(text, given.values.size()),
+          result);
     else
       put(text, vm::Param::item, 0, result);
     return true;
@@ -611,7 +620,7 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   const std::string& verb = to.verb.name;
   if (to.verb.texts != Texts::any) {
     const auto says = std::ranges::find(to.actuator.verbs, Texts::any, &VerbConfig::texts);
-    to.diagnostics.report(Code::E0505, "`" + verb + "` plays a file, and cannot say numbers")
+    to.diagnostics.report(Code::E0505, "`" + verb + "` plays a file, and cannot say values")
         .label(given.text_span)
         .helps(says != to.actuator.verbs.end() ? "to speak, use `" + says->name + "`"
                                                : "the device \"speaker\" can: it says any text");
@@ -619,9 +628,8 @@ bool Commands::say_values(const Recipient& to, const Given& given, ir::Command& 
   }
   if (given.values.size() > vm::kTextParams.size()) {
     to.diagnostics
-        .report(Code::E0407, "this text has " + std::to_string(given.values.size()) +
-                                 " numbers; `" + verb + "` takes at most " +
-                                 std::to_string(vm::kTextParams.size()))
+        .report(Code::E0407, "this text has " + std::to_string(given.values.size()) + " values; `" +
+                                 verb + "` takes at most " + std::to_string(vm::kTextParams.size()))
         .label(given.text_span)
         .helps("put the rest in another `" + verb + "`");
     return false;

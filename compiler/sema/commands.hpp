@@ -105,7 +105,9 @@ private:
   bool calls_define(const ast::Command& command);
   bool is_foreign(const ast::Command& command);
   std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);
-  Given evaluate(const ast::Argument& argument);
+  // `says_any_text`: a word of the program is what it says.
+  Given evaluate(const ast::Argument& argument, bool says_any_text);
+  [[nodiscard]] bool says_any_text(std::string_view verb) const;
   // The text whose parts begin at `first`; without a text after a mistake.
   Given put_together(const ast::Command& command, std::size_t first);
   bool has_decimal_comma(const ast::Argument& part, const ast::Argument& next);
@@ -130,7 +132,7 @@ private:
   static void warn_of_a_sweep(const Recipient& to, const std::vector<Given>& given,
                               const ir::Command& result);
   static void help_with_files(const Recipient& to, Diagnostic& d);
-  Typed evaluate_number(const ast::Argument& argument);
+  Typed evaluate_value(const ast::Argument& argument);
   [[nodiscard]] bool is_known_word(std::string_view word) const;  // of any actuator
   [[nodiscard]] bool names_a_number(const ast::Name& name) const;
 

@@ -558,7 +558,7 @@ void Statements::put_log(const ast::Log& node, const ChosenText* chosen, Span sp
   if (text.values().size() > kMaxValues) {
     diagnostics_
         .report(Code::E0407, std::string(node.alert ? "this ALERT" : "this LOG") + " has " +
-                                 std::to_string(text.values().size()) + " numbers; the limit is " +
+                                 std::to_string(text.values().size()) + " values; the limit is " +
                                  std::to_string(kMaxValues))
         .label(span);
     return;

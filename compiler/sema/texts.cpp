@@ -45,10 +45,15 @@ bool TextBuilder::add(const ast::Argument& part) {
     if (binding != nullptr && binding->text) return add(*binding->text, part.span);
     value = expressions_.operand({word->name, nullptr}, word->name.span);
   }
+  return add(std::move(value));
+}
+
+bool TextBuilder::add(Typed value) {
   if (value.type == Type::word) return add_word(std::move(value));
   value = expressions_.number_of(std::move(value));
   if (!value.is_number()) return false;
-  add(std::move(value));
+  append(place_for(value.unit != nullptr ? *value.unit : canonical_unit(vm::Dimension::number)));
+  values_.push_back(std::move(value.code));
   return true;
 }
 
@@ -83,9 +88,16 @@ bool TextBuilder::report_second(Span span) {
   return false;
 }
 
-void TextBuilder::add(Typed number) {
-  append(place_for(number.unit != nullptr ? *number.unit : canonical_unit(vm::Dimension::number)));
-  values_.push_back(std::move(number.code));
+vm::Value spoken_words(std::string text, std::size_t values) {
+  for (; values > 0; --values)
+    if (const auto place = find_place(text)) text.replace(place->begin, place->size, "0");
+  constexpr std::size_t kMost = 1000;
+  constexpr std::string_view kBlanks = " \t\n\v\f\r";
+  std::size_t words = 0;
+  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string::npos && words < kMost;
+       ++words)
+    at = text.find_first_not_of(kBlanks, text.find_first_of(kBlanks, at));
+  return static_cast<vm::Value>(words);
 }
 
 }  // namespace robosync::compiler

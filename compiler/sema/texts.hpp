@@ -18,8 +18,7 @@ public:
   // False after a mistake, which has been reported, and in a DEFINE that nothing runs.
   bool add(const ast::Argument& part);
   bool add(std::string_view text, Span span);
-
-  void add(Typed number);
+  bool add(Typed value);
 
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] std::vector<Expression>& values() { return values_; }
@@ -35,5 +34,8 @@ private:
   std::string text_;
   std::vector<Expression> values_;
 };
+
+// How many words it takes to say such a text; each of its values counts as one.
+[[nodiscard]] vm::Value spoken_words(std::string text, std::size_t values);
 
 }  // namespace robosync::compiler

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -62,17 +63,20 @@ private:
     }
   }
 
-  // One of its blocks runs, or none.
+  // Exactly one of its blocks runs: an IF without an ELSE has an empty one.
   void branch(const ir::Statement& statement, Waiting& waiting) {
     const Waiting before = waiting;
+    bool first = true;
     for_each_block(statement, [&](const ir::Block& block) {
       Waiting after = before;
       walk(block, after);
+      if (std::exchange(first, false)) waiting = {};
       waiting.merge(after);
     });
   }
 
-  // A round that adds a command is too much after a few rounds; any other round soon changes nothing.
+  // A round that adds a command is too much after a few rounds; any other round soon changes nothing. How often a loop runs that
+  // has no constant count is not known: twice, as almost all do.
   void repeat(const ir::Repeat& loop, Waiting& waiting) {
     const vm::Value rounds = ir::constant_count(loop).value_or(2 * vm::kScale) / vm::kScale;
     for (vm::Value round = 0; round < rounds && !reported_; ++round) {

@@ -10,10 +10,11 @@
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/syntax/edit.hpp"
-#include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/reader.hpp"
 
 namespace robosync::compiler {
+
+class Examples;
 
 // What a WHEN, a WHILE or an EVERY in a response is meant for, and what to write instead.
 [[nodiscard]] constexpr std::string_view in_response(TokenKind rule) {
@@ -29,7 +30,7 @@ inline constexpr std::array<std::string_view, 9> kForeignDefines = {
     "FUNCTION", "FUNC", "FUN", "FN", "DEF", "PROCEDURE", "PROC", "SUB", "VOID"};
 
 // What to do with two commands in one line.
-constexpr std::string_view kOwnLine = "write each command on its own line: they start together";
+inline constexpr const char* kOwnLine = "write each command on its own line: they start together";
 
 // Habits from other constructs of RSL (habits.cpp) and from other languages (foreign_habits.cpp), and words that mean
 // something else where they are (misplaced_words.cpp).
@@ -52,8 +53,8 @@ constexpr std::string_view kOwnLine = "write each command on its own line: they 
                                                      const Attempt& failure,
                                                      Diagnostics& diagnostics);
 
-// Lines that only the robot's names tell from other mistakes (robot_lines.cpp). `SAY "a", SHOW eyes happy`: looks like a wrong text,
-// so it comes before the others.
+// Lines that only the robot's names tell from other mistakes (robot_lines.cpp). `SAY "a", SHOW eyes happy`: looks like a wrong
+// text, so it comes before the others.
 [[nodiscard]] std::optional<Edit> explain_joined_command(const Tokens& tokens,
                                                          const SourceFile& source,
                                                          const Attempt& failure,

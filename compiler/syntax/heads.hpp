@@ -11,8 +11,8 @@ namespace robosync::compiler {
 // Reports such words and removes them from the tokens.
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
-// `REMEMBER end = 0`, `margin BELOW 5` in a CHECK: reports a word of RSL that is declared as a name. The same spelling, in lower case, counts as that
-// name everywhere, so that the mistake is reported once.
+// `REMEMBER end = 0`, `margin BELOW 5` in a CHECK: reports a word of RSL that is declared as a name. The same spelling, in lower
+// case, counts as that name everywhere, so that the mistake is reported once.
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
 // Reports rows of a CHECK, a MOTION or a TEST whose first line is missing, and inserts one.

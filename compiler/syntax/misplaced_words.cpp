@@ -46,7 +46,6 @@ public:
           &MisplacedWords::columns_of_motion,   &MisplacedWords::word_with_sign,
           &MisplacedWords::changed_wrongly,     &MisplacedWords::repeat_how_often,
           &MisplacedWords::resume_after,        &MisplacedWords::modifier_behind_do,
-          &MisplacedWords::start_alone,         &MisplacedWords::start_modified,
           &MisplacedWords::otherwise,           &MisplacedWords::more_than})
       if (auto edit = (this->*habit)()) return edit;
     return std::nullopt;
@@ -57,9 +56,7 @@ private:
   std::optional<Edit> safety_without_when() {
     const bool named = is(0, Kinds::SAFETY) && !is(1, Kinds::WHEN) && !text(1).empty();
     if (!named || (tokens_.size() > 2 && !is(2, Kinds::NEWLINE))) return std::nullopt;
-    std::size_t next = 2;
-    while (is(next, Kinds::NEWLINE))
-      ++next;
+    const std::size_t next = after_line_ends(2);
     const bool lacks = next >= tokens_.size() ||
                        is_one_of(tokens_[next].kind, {Kinds::END, Kinds::DO, Kinds::RESUME});
     if (!lacks || tokens_.size() < 2) return std::nullopt;
@@ -272,7 +269,7 @@ private:
   std::optional<Edit> commands_with_and() {
     if (!is(stop_, Kinds::AND) || !is_whole_command()) return std::nullopt;
     report(Code::E0001, "`AND` joins conditions, not commands", tokens_[stop_].span)
-        .helps(std::string(kOwnLine))
+        .helps(kOwnLine)
         .helps("if several actuators do the same, make them a group in robot.json");
     return change(stop_, end_of_command(stop_) - stop_);
   }
@@ -282,8 +279,7 @@ private:
     if (!is_command() || has(statement_, stop_, Kinds::WITH)) return std::nullopt;
     for (std::size_t at = statement_; at < stop_ && !is(at, Kinds::STRING); ++at) {
       if (!is(at, Kinds::COMMA) || !is(at + 1, Kinds::NAME)) continue;
-      report(Code::E0001, "a comma cannot join two commands", tokens_[at].span)
-          .helps(std::string(kOwnLine));
+      report(Code::E0001, "a comma cannot join two commands", tokens_[at].span).helps(kOwnLine);
       return change(at, end_of_command(at) - at);
     }
     return std::nullopt;
@@ -497,9 +493,7 @@ private:
   // `touch LEVEL > 4 3 TIMES`, `wave_detect THEN touch LEVEL > 0`, each without its WITHIN; and THEN instead of DO
   std::optional<Edit> within() {
     if (!contains(expected_, Kinds::WITHIN) || is_near(text(stop_), "WITHIN")) return std::nullopt;
-    std::size_t next = before_ + 1;
-    while (is(next, Kinds::NEWLINE))
-      ++next;
+    const std::size_t next = after_line_ends(before_ + 1);
     const bool asked = is(next, Kinds::DO);
     const Tokens lacking{missing(Kinds::WITHIN, before_ + 1),
                          missing(Kinds::QUANTITY, before_ + 1)};
@@ -623,34 +617,6 @@ private:
     report(Code::E0010, quote(stop_) + " goes before the `DO` of its rule", tokens_[stop_].span)
         .label(tokens_[*block].span, "the rule begins here", false);
     return change(stop_, end_ - stop_);
-  }
-
-  // `START DO`
-  std::optional<Edit> start_alone() {
-    if (stop_ != begin_ || !is(stop_, Kinds::START)) return std::nullopt;
-    std::size_t next = stop_ + 1;
-    while (is(next, Kinds::NEWLINE))
-      ++next;
-    if (!is(next, Kinds::DO)) return std::nullopt;
-    Span front = tokens_[stop_].span;
-    front.end = front.begin;
-    report(Code::E0008, "`AT` is missing before `START`", front)
-        .fix(front, "AT ", Applicability::likely);
-    return change(stop_, 0, {missing(Kinds::AT, stop_)});
-  }
-
-  // `AT START COOLDOWN 3s DO`
-  std::optional<Edit> start_modified() {
-    if (!is(before_, Kinds::START) ||
-        !is_one_of(tokens_[stop_].kind, {Kinds::COOLDOWN, Kinds::MARGIN, Kinds::RESTARTING,
-                                         Kinds::WAITING, Kinds::PRIORITY}))
-      return std::nullopt;
-    std::size_t last = stop_;
-    while (last < end_ && !is(last, Kinds::DO))
-      ++last;
-    report(Code::E0010, quote(stop_) + " does not go with `AT START`, which happens once",
-           span(stop_, last));
-    return change(stop_, last - stop_);
   }
 
   // `OTHERWISE SAY "y"`

@@ -88,6 +88,13 @@ protected:
     return all;
   }
 
+  // From `at` on, the first token that is no line end.
+  std::size_t after_line_ends(std::size_t at) const {
+    while (is(at, Kinds::NEWLINE))
+      ++at;
+    return at;
+  }
+
   bool begins_statement(std::size_t at) const {
     return is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::NEWLINE, Kinds::OPTION});
   }

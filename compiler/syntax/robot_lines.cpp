@@ -1,6 +1,7 @@
 // Lines that only the robot's names tell from other mistakes: a sentence as a condition, a command behind a comma. See
 // habits.hpp.
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
@@ -54,7 +55,7 @@ public:
     Span gap = tokens_[comma].span;
     gap.end = tokens_[comma + 1].span.begin;
     report(Code::E0001, "a comma cannot join two commands", tokens_[comma].span)
-        .helps(std::string(kOwnLine))
+        .helps(kOwnLine)
         .fix(gap, "\n" + std::string(indentation(tokens_[statement_], source_), ' '),
              Applicability::likely);
     return change(comma, statement_end() - comma);

@@ -53,6 +53,8 @@ public:
                             &WrongForms::within_alone,
                             &WrongForms::value_below,
                             &WrongForms::one_of_commands,
+                            &WrongForms::start_alone,
+                            &WrongForms::start_modified,
                             &WrongForms::start_of_rule})
       if (auto edit = (this->*form)()) return edit;
     return std::nullopt;
@@ -252,9 +254,7 @@ private:
     const bool ends =
         stop_ > 0 && is(stop_, Kinds::NEWLINE) &&
         is_one_of(tokens_[stop_ - 1].kind, {Kinds::COOLDOWN, Kinds::MARGIN, Kinds::PRIORITY});
-    std::size_t next = stop_;
-    while (is(next, Kinds::NEWLINE))
-      ++next;
+    const std::size_t next = after_line_ends(stop_);
     if (!ends || !is(next, Kinds::QUANTITY)) return std::nullopt;
     Span gap = tokens_[stop_ - 1].span;
     gap.begin = gap.end;
@@ -442,11 +442,6 @@ private:
     return instead(3, next - 3,
                    {Kinds::LOG, Kinds::STRING, Kinds::NEWLINE, Kinds::END, Kinds::NEWLINE});
   }
-  std::size_t after_line_ends(std::size_t at) const {
-    while (is(at, Kinds::NEWLINE))
-      ++at;
-    return at;
-  }
   bool is_rule(std::size_t at) const {
     return at < tokens_.size() &&
            is_one_of(tokens_[at].kind, {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT});
@@ -540,6 +535,32 @@ private:
     return found;
   }
 
+  // `START DO`
+  std::optional<Edit> start_alone() {
+    if (stop_ != begin_ || !is(stop_, Kinds::START)) return std::nullopt;
+    const std::size_t next = after_line_ends(stop_ + 1);
+    if (!is(next, Kinds::DO)) return std::nullopt;
+    Span front = tokens_[stop_].span;
+    front.end = front.begin;
+    report(Code::E0008, "`AT` is missing before `START`", front)
+        .fix(front, "AT ", Applicability::likely);
+    return change(stop_, 0, {missing(Kinds::AT, stop_)});
+  }
+
+  // `AT START COOLDOWN 3s DO`
+  std::optional<Edit> start_modified() {
+    if (!is(before_, Kinds::START) ||
+        !is_one_of(tokens_[stop_].kind, {Kinds::COOLDOWN, Kinds::MARGIN, Kinds::RESTARTING,
+                                         Kinds::WAITING, Kinds::PRIORITY}))
+      return std::nullopt;
+    std::size_t last = stop_;
+    while (last < end_ && !is(last, Kinds::DO))
+      ++last;
+    report(Code::E0010, quote(stop_) + " does not go with `AT START`, which happens once",
+           span(stop_, last));
+    return change(stop_, last - stop_);
+  }
+
   // `START`, and commands on the lines below
   std::optional<Edit> start_of_rule() {
     const auto block = open_block();
@@ -547,9 +568,7 @@ private:
     if (stop_ != begin_ || !is(stop_, Kinds::START) || end_ != behind ||
         (block && !is(*block, Kinds::BEHAVIOR)))
       return std::nullopt;
-    std::size_t next = end_;
-    while (is(next, Kinds::NEWLINE))
-      ++next;
+    const std::size_t next = after_line_ends(end_);
     if (next >= tokens_.size() || is(next, Kinds::DO)) return std::nullopt;
     const Span here = span(stop_, behind);
     say(Code::E0001, here, "a rule cannot begin with `{0}`",
@@ -595,9 +614,7 @@ private:
     if (!walk.open().empty()) return std::nullopt;
     say(Code::E0001, tokens_[stop_].span, "a line cannot begin with `{0}` here",
         "commands belong in a rule or a DEFINE: `WHEN ... DO ... END`", text(stop_));
-    while (is(end, Kinds::NEWLINE))
-      ++end;
-    return change(stop_, end - stop_);
+    return change(stop_, after_line_ends(end) - stop_);
   }
 };
 

@@ -1,9 +1,12 @@
 // Programs and configurations through the whole compiler, for the tests.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/compiler.hpp"
@@ -18,6 +21,18 @@ using robosync::testing::read_file;
 
 inline std::filesystem::path source_folder() {
   return ROBOSYNC_SOURCE_DIR;
+}
+
+// All files with the extension in these folders of the repository and in their subfolders, sorted.
+inline std::vector<std::filesystem::path> files_in(std::initializer_list<std::string_view> folders,
+                                                   std::string_view extension) {
+  std::vector<std::filesystem::path> found;
+  for (const std::string_view folder : folders)
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(source_folder() / folder))
+      if (entry.path().extension() == extension) found.push_back(entry.path());
+  std::ranges::sort(found);
+  return found;
 }
 
 // Wrong and doubtful programs, and the robot that they share.

@@ -1,5 +1,8 @@
 // What programs become: instructions, sections, sizes; and that the same input gives the same
 // bytes.
+#include <string>
+#include <utility>
+
 #include <catch2/catch.hpp>
 
 #include "tests/compiler/compiled.hpp"
@@ -230,6 +233,29 @@ TEST_CASE("a sound's own length travels with the command, unless the program say
   CHECK(code("PLAY sound 'b.wav'").find("2.5") != std::string::npos);
   CHECK(code("PLAY sound 'c.wav'").find("for") == std::string::npos);
   CHECK(code("PLAY sound 'b.wav' FOR 3s").find("2.5") == std::string::npos);
+}
+
+TEST_CASE("a word of the program can be said, alone or in a text, and counts as one word") {
+  const std::string robot = R"({
+    "sensors": [{"name": "touch", "type": "VIRTUAL"}],
+    "actuators": [{"name": "mouth", "type": "VIRTUAL", "device": "speaker"}]})";
+  // What is said, and for how long.
+  const auto said = [&](const std::string& body) {
+    const Result result =
+        compile_text("STATE mood: calm, very happy, sad\n" + rule("touch LEVEL > 3", body), robot);
+    INFO(messages(result));
+    REQUIRE(!result.image.empty());
+    const vm::Image image = view(result);
+    REQUIRE(image.words.size() == 1);
+    return std::pair(std::string(image.string(image.words[0].name)), image.words[0].value);
+  };
+  const std::string mood = "{|calm|very happy|sad}";
+  CHECK(said("SAY mood") == std::pair(mood, 350));
+  CHECK(said("SAY \"I am\", mood") == std::pair("I am " + mood, 3 * 350));
+  CHECK(said("SAY mouth mood FOR 2s") == std::pair(mood, 0));
+  CHECK(messages(compile_text("STATE mood: calm, happy\n" + rule("touch LEVEL > 3", "SAY FOR mood"),
+                              robot))
+            .find("`mood` is a word, not a number") != std::string::npos);
 }
 
 TEST_CASE("wiring travels as robot.json has it") {

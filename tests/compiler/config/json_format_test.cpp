@@ -1,8 +1,7 @@
-// rsc fmt's style of robot.json: what it makes of each kind of line, that it does not depend on how the text was spaced before, and
-// that nothing but white space changes.
+// rsc fmt's style of robot.json: what it makes of each kind of line, that it does not depend on how the text was spaced before,
+// and that nothing but white space changes.
 #include "compiler/config/json_format.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <random>
 
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/compiler.hpp"
+#include "tests/compiler/compiled.hpp"
 #include "tests/compiler/syntax/examples.hpp"
 #include "tests/compiler/syntax/mutations.hpp"
 #include "tests/support/golden.hpp"
@@ -17,13 +17,10 @@
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
-using robosync::testing::read_file;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kRoot = ROBOSYNC_SOURCE_DIR;
 
 // Empty if the text is not JSON.
 std::string styled(const std::string& text) {
@@ -35,10 +32,8 @@ std::string styled(const std::string& text) {
 }
 
 std::vector<fs::path> descriptions() {
-  std::vector<fs::path> found{kRoot / "docs/robot.json"};
-  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "examples"))
-    if (entry.path().extension() == ".json") found.push_back(entry.path());
-  std::ranges::sort(found);
+  std::vector<fs::path> found = files_in({"examples"}, ".json");
+  found.push_back(source_folder() / "docs/robot.json");
   return found;
 }
 
@@ -82,6 +77,8 @@ TEST_CASE("each part of a robot.json has its place") {
         "\n"
         "  \"board\": \"microbit-v2\"\n"
         "}\n");
+  CHECK(styled("{\"a\":1,\n\n\"b\":2,\n\"c\":3}") ==
+        "{\n  \"a\": 1,\n\n  \"b\": 2,\n  \"c\": 3\n}\n");
   CHECK(styled("{}") == "{}\n");
   CHECK(styled("[1,2 , {}]") == "[1, 2, {}]\n");
   CHECK(styled("7") == "7\n");

@@ -86,7 +86,7 @@ TEST_CASE("statements that are too many") {
   says("`words` has 65 texts; a rule can choose from at most 64",
        "LIST words: \"x\"" + repeated(64, [](int i) { return ", \"" + number(i) + "\""; }) + "\n" +
            response("  LOG ANY words\n"));
-  says("this text has 4 numbers; `SAY` takes at most 3", response("  SAY \"x\", 1, 2, 3, 4\n"),
+  says("this text has 4 values; `SAY` takes at most 3", response("  SAY \"x\", 1, 2, 3, 4\n"),
        talking_robot());
   says("the program uses more than 64 modules, the most that rsc reads",
        repeated(65, [](int i) { return "USE \"m" + number(i) + ".rsl\"\n"; }));

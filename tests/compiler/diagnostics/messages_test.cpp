@@ -129,6 +129,34 @@ TEST_CASE("after TO, a unit apart from its number has one meaning") {
   CHECK(fix.applicability == Applicability::certain);
 }
 
+TEST_CASE("a sound that robot.json has and no program uses may be the misspelt one") {
+  const std::string wrong = "AT START DO\n  PLAY sound \"greting.wav\"\n";
+  CHECK(first_fix(wrong + "END\n").applicability == Applicability::likely);
+  CHECK(first_fix(wrong + "  THEN\n  PLAY sound \"greeting.wav\"\nEND\n").applicability ==
+        Applicability::certain);
+}
+
+TEST_CASE("what a pupil may have meant otherwise is not suggested") {
+  const auto said = [](const std::string& program) {
+    const Result result = compile_text(program, common_robot());
+    CHECK(result.diagnostics.errors() == 1);
+    return messages(result);
+  };
+  const std::string rest = " DO\n  LOG \"a\"\nEND\n", full = "write both conditions in full";
+  CHECK_THAT(said("WHEN touch LEVEL > 3 AND < 5" + rest), Catch::Contains(full));
+  CHECK_THAT(said("WHEN NOT touch LEVEL > 3 AND < 5" + rest), !Catch::Contains(full));
+  const auto loop = [&](const std::string& head) {
+    return said("AT START DO\n  " + head + "\n    LOG \"a\"\n  END\nEND\n");
+  };
+  CHECK_THAT(loop("FOR i = 1 TO 7"), Catch::Contains("write `REPEAT 7 TIMES`"));
+  CHECK_THAT(loop("FOR i = 1 TO 7.5"), !Catch::Contains("REPEAT 7 TIMES"));
+  // The fix would make the number a part of the comment.
+  const Result commented =
+      compile_text("WHEN touch LEVEL > 3\nCOOLDOWN # rest\n3s\n" + rest.substr(1), common_robot());
+  CHECK_THAT(messages(commented), Catch::Contains("belongs at the end of the line above"));
+  CHECK(commented.diagnostics.all().front().fixes.empty());
+}
+
 // `arm` may be one of the arms: the fix would move both.
 TEST_CASE(
     "a group is never the certain fix of a word that one of its members has, or of the singular") {

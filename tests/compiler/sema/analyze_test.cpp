@@ -360,6 +360,14 @@ TEST_CASE("a response may not give an actuator more commands than can wait for i
       "IF touch LEVEL > 5\nDO\n" + times(5, move) + "ELSE\n" + times(5, move) + "END\n";
   CHECK_FALSE(refused(either + times(3, move)));
   CHECK(refused(either + times(4, move)));
+  const auto sides = [&](const std::string& first, const std::string& second) {
+    return "IF touch LEVEL > 5\nDO\n" + first + "ELSE\n" + second + "END\n";
+  };
+  CHECK_FALSE(refused(times(8, move) + sides("THEN\n", "WAIT 1s\n") + times(8, move)));
+  CHECK(refused(times(8, move) + sides("THEN\n", "LOG \"a\"\n") + move));
+  CHECK_FALSE(refused(times(8, move) + "PICK ONE\nOPTION 50%\nTHEN\nOPTION 50%\nWAIT 1s\nEND\n" +
+                      times(8, move)));
+  CHECK(refused(times(8, move) + "IF touch LEVEL > 5\nDO\nTHEN\nEND\n" + move));
   const Result ending = compile_text(
       "WHEN touch LEVEL > 3 DO\nMOVE right_arm SLOWLY\nELSE\n" + times(9, move) + "END\n",
       common_robot());

@@ -13,18 +13,17 @@
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/lexer.hpp"
 #include "compiler/syntax/parser.hpp"
+#include "tests/compiler/compiled.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/share.hpp"
 #include "vm/image.hpp"
 
 using namespace robosync::compiler;
-using robosync::testing::read_file;
+using namespace robosync::compiler::testing;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kRoot = ROBOSYNC_SOURCE_DIR;
 
 // The text formatted; that of a program with a mistake is empty.
 std::string styled(const std::string& text) {
@@ -36,12 +35,7 @@ std::string styled(const std::string& text) {
 }
 
 std::vector<fs::path> programs() {
-  std::vector<fs::path> found;
-  for (const char* const folder : {"examples", "stdlib"})
-    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
-      if (entry.path().extension() == ".rsl") found.push_back(entry.path());
-  std::ranges::sort(found);
-  return found;
+  return files_in({"examples", "stdlib"}, ".rsl");
 }
 
 // The keywords of some lines in small letters; names that are keywords elsewhere stay.
@@ -105,7 +99,7 @@ TEST_CASE("a comment that may be meant as a percentage stays where rsc check say
 }
 
 TEST_CASE("each kind of line has its place") {
-  const fs::path folder = kRoot / "tests/compiler/syntax/style";
+  const fs::path folder = source_folder() / "tests/compiler/syntax/style";
   const std::string after = styled(read_file(folder / "before.rsl"));
   REQUIRE_FALSE(after.empty());
   robosync::testing::expect_golden(folder / "after.rsl", after);
@@ -184,7 +178,7 @@ std::vector<std::byte> meaning(const std::string& text, const std::string& robot
 
 TEST_CASE("the image is the same, with the lines of the source in it") {
   for (const char* const example : {"quizmaster", "museum_guide", "greeting_robot", "puppet"}) {
-    const fs::path folder = kRoot / "examples" / example;
+    const fs::path folder = source_folder() / "examples" / example;
     const std::string robot = read_file(folder / "robot.json");
     const std::string text = read_file(folder / "robot.rsl");
     CHECK(meaning(styled(text), robot) == meaning(text, robot));
