@@ -1,7 +1,6 @@
 // What to write instead of a verb or an option that rsc does not have.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

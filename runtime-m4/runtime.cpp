@@ -260,10 +260,12 @@ void Runtime::fill_state(link::State& state, std::uint32_t first) const {
   state.stopped = stopped_ ? 1 : 0;
   if (!running_) return;
   const vm::Image& image = shared_.program.image;
+  const std::size_t inputs = image.channels.size() + image.variables.size();
   state.program_us = trace_.program_time();
+  // The safety thread and the step thread write these, and may preempt this one: under the lock all are of one moment.
+  const auto lock = kernel_.lock();
   safety_rules_.fill_tripped_now(state.tripped);
   state.halted = control_.halted();
-  const std::size_t inputs = image.channels.size() + image.variables.size();
   for (std::size_t i = first; i < inputs && state.count < state.values.size(); ++i)
     state.values[state.count++] = shared_.processing.snapshot().value(static_cast<std::uint8_t>(i));
 }

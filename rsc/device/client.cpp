@@ -254,7 +254,6 @@ void Client::reopen(const Message& busy, bool& tried) {
     link::Hello taking = introduction_;
     taking.take = 1;
     (void)hello_answer(send(MessageType::hello, link::wire_bytes(taking)));
-    if (traces_) set_trace(true);
     return;
   }
   if (tried) {
@@ -265,7 +264,6 @@ void Client::reopen(const Message& busy, bool& tried) {
   }
   tried = true;
   (void)hello();
-  if (traces_) set_trace(true);
 }
 
 std::uint8_t Client::send_hello() {
@@ -280,7 +278,11 @@ link::HelloReply Client::hello_answer(std::uint8_t sequence) {
   const auto give_up = transport_.now() + timeout_;
   while (true) {
     const auto until = std::min(give_up, transport_.now() + kRepeatAfter);
-    if (const auto reply = take_hello(sequence, until)) return *reply;
+    if (const auto reply = take_hello(sequence, until)) {
+      // Does not wait for the reply: a board that answers `busy` to everything would be asked without end.
+      if (traces_) (void)send(MessageType::trace_on, link::wire_bytes(link::TraceOn{1}));
+      return *reply;
+    }
     if (transport_.now() >= give_up) no_answer();
     sequence = send_hello();
   }

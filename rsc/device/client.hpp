@@ -77,10 +77,9 @@ public:
   // The next reply. Events, logs and faults that arrive meanwhile are queued for next_unasked().
   std::optional<Message> next_reply(Milliseconds timeout);
   // Handles the reply `busy`, once for each request: says hello, because the board may have restarted, or the host that had the
-  // line may be idle. A hello ends the trace, so it is switched on again. If the board is still busy with a process of this
-  // computer that does not exist any more (host_name.hpp), the line is taken over, once: a user who interrupts an upload may
-  // start another at once. Otherwise throws Refused: the board gives the line free when nothing has come from its host for three
-  // seconds.
+  // line may be idle. If the board is still busy with a process of this computer that does not exist any more (host_name.hpp),
+  // the line is taken over, once: a user who interrupts an upload may start another at once. Otherwise throws Refused: the board
+  // gives the line free when nothing has come from its host for three seconds.
   void reopen(const Message& busy, bool& tried);
   // The next event, log line or fault record.
   std::optional<Message> next_unasked(Milliseconds timeout);
@@ -121,7 +120,7 @@ private:
   std::optional<Transport::Clock::time_point> heard_;  // when the last valid frame came
   std::size_t stray_bytes_ = 0;                        // that came after it
   std::uint8_t sequence_ = 0;
-  bool traces_ = false;  // the trace is wanted; each hello ends it
+  bool traces_ = false;  // the trace is wanted: each hello ends it, and so switches it on again
   std::deque<Message> replies_;
   std::deque<Message> unasked_;
 };

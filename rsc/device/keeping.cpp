@@ -11,6 +11,7 @@
 
 #include "rsc/device/session.hpp"
 #include "rsc/failure.hpp"
+#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -21,7 +22,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr milliseconds kReading{10'000};  // a board needs one second for the largest program
 constexpr milliseconds kLook{20};
-constexpr milliseconds kFirstLook{1000};
+// A program that waits longer for its sensors (`safety.start`) is not waited for: a person may be about to feed them.
+constexpr std::uint32_t kLongestStartMs = 500;
+constexpr milliseconds kBegins{1000};  // program time has begun by then, in a slow emulator, too
+// Program time: by then the rules have been evaluated, and the board has seen whether one tripped.
+constexpr std::uint64_t kEvaluatedUs = 2 * policy::kSafetyPeriodMs * 1000;
 
 constexpr std::array kKeepingStates = {
 #define KEEPING(name, doc) std::string_view(#name),
@@ -151,14 +156,12 @@ link::Kept after_trial(Client& client) {
 }
 
 link::Kept after_first_look(Client& client, std::uint32_t safety_start_ms) {
-  constexpr std::uint32_t kLongestStart = 500;
-  constexpr std::uint64_t kLookedUs = 20'000;
   link::Kept kept = when_read(client);
-  if (kept.state != Keeping::on_trial || kept.kept_bytes == 0 || safety_start_ms > kLongestStart)
+  if (kept.state != Keeping::on_trial || kept.kept_bytes == 0 || safety_start_ms > kLongestStartMs)
     return kept;
-  const auto give_up = client.now() + milliseconds(safety_start_ms) + kFirstLook;
+  const auto give_up = client.now() + milliseconds(safety_start_ms) + kBegins;
   while (kept.state == Keeping::on_trial && client.now() < give_up &&
-         client.status().program_us < kLookedUs) {
+         client.status().program_us < kEvaluatedUs) {
     std::this_thread::sleep_for(kLook);
     kept = when_read(client);
   }

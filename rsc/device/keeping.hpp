@@ -25,7 +25,8 @@ namespace robosync::tool {
 
 // Waits until the trial of the running program is over.
 [[nodiscard]] link::Kept after_trial(Client& client);
-// Waits until the running program's SAFETY rules have been evaluated for the first time, if that is soon.
+// Waits until the running program's SAFETY rules have been evaluated for the first time, if it can go back and does not
+// wait long for its sensors (`safety_start_ms`).
 [[nodiscard]] link::Kept after_first_look(Client& client, std::uint32_t safety_start_ms);
 // Throws Failure (program) if the board keeps no program to return to after a trial.
 void expect_kept_program(Client& client);

@@ -3,12 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "compiler/config/json_format.hpp"
-#include "compiler/config/json_reader.hpp"
-#include "compiler/syntax/format.hpp"
-#include "compiler/syntax/parser.hpp"
 #include "rsc/lsp/answers.hpp"
 #include "rsc/lsp/uris.hpp"
+#include "rsc/text_format.hpp"
 
 namespace robosync::tool::lsp {
 
@@ -39,15 +36,10 @@ Json difference(const SourceFile& before, std::string_view after, Encoding encod
 std::optional<std::string> formatted(const Document& document) {
   SourceMap sources;
   compiler::Diagnostics diagnostics;
-  const compiler::FileId file = sources.add("", std::string(document.source.text()));
-  if (name_of(document.uri).ends_with(".json")) {
-    const auto root = compiler::json::read(sources, file, diagnostics);
-    if (!root) return std::nullopt;
-    return compiler::json::formatted(sources, file, *root);
-  }
-  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
+  const compiler::FileId file =
+      sources.add(name_of(document.uri), std::string(document.source.text()));
+  auto result = tool::formatted(sources, file, diagnostics);
   if (diagnostics.errors() > 0) return std::nullopt;
-  auto result = compiler::formatted(sources, file, tree);
   if (!result) throw Refusal("this text cannot be formatted without changing its meaning");
   return result;
 }

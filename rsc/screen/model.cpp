@@ -35,7 +35,6 @@ void Model::board(const link::HelloReply& board, const Past& past,
   const std::string robot = text_of(board.robot);
   board_ = text_of(board.board);
   if (!robot.empty()) board_ = fmt::format("{} ({})", robot, board_);
-  stopped_ = board.stopped != 0;
   uptime_us_ = past.status.uptime_us;
   say(fmt::format("{}, up {}", board_, past_text(past.status)));
   if (past.has_fault()) say("last fault: " + fault_text(past.fault));

@@ -1,7 +1,6 @@
 // May assume that the plan was made for this program.
 #include "rsc/trace/recording.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -34,13 +33,6 @@ std::optional<std::uint8_t> channel_of(const vm::Image& image, const ChannelName
   return std::nullopt;
 }
 
-// By a later step for the same time.
-bool is_replaced(const compiler::test_plan::PlannedTest& test, const PlannedReading& reading) {
-  return std::ranges::any_of(test.readings, [&](const PlannedReading& other) {
-    return &other > &reading && other.channel == reading.channel && other.at == reading.at;
-  });
-}
-
 }  // namespace
 
 Recording record(const Program& program, const compiler::test_plan::TestPlan& plan,
@@ -67,7 +59,7 @@ Recording record(const Program& program, const compiler::test_plan::TestPlan& pl
   for (const PlannedReading& reading : test.readings) {
     const auto channel = channel_of(program.image(), plan.channels.at(reading.channel));
     const bool sampled = !channel || simulator.is_sampled(reading.at * kMicroseconds, *channel);
-    if (!sampled && !is_replaced(test, reading)) recording.unseen.push_back(&reading);
+    if (!sampled) recording.unseen.push_back(&reading);
   }
   return recording;
 }

@@ -195,7 +195,8 @@ Wanted wanted_of_running(const FeedOptions& options, Session& session, const Pro
   } catch (const Failure& failure) {
     if (failure.exit() != Exit::program) throw;
     const link::Kept kept = session.client.kept();
-    if (kept.given_up_hash == link::ProgramHash{}) throw;
+    const bool still_runs = kept.given_up_hash == program.image().header->program_hash;
+    if (kept.given_up_hash == link::ProgramHash{} || still_runs) throw;
     throw Failure(
         failure.exit(),
         followed_by(failure.what(),
@@ -312,7 +313,7 @@ void add_feed(Options& options) {
   options.option("--record", "R.jsonl", asked->record, "with --watch: record it for rsc replay");
   add_format_option(options, asked->format);
   options.runs([asked] {
-    if (asked->anyway) asked->how.judged = Judged::not_at_all;
+    asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     feed(*asked);
   });
 }

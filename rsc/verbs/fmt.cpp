@@ -1,28 +1,20 @@
 // rsc fmt FILE... [--check]
-#include <cstddef>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "compiler/config/json_format.hpp"
-#include "compiler/config/json_reader.hpp"
 #include "compiler/diagnostics/render.hpp"
-#include "compiler/source/ascii.hpp"
-#include "compiler/source/utf8.hpp"
-#include "compiler/syntax/format.hpp"
-#include "compiler/syntax/parser.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
+#include "rsc/text_format.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
@@ -35,36 +27,12 @@ struct FormatOptions {
   bool quiet = false;
 };
 
-bool is_json(const std::string& name, std::string_view text) {
-  const std::string_view words = compiler::utf8::without_byte_order_mark(text);
-  const std::size_t first = words.find_first_not_of(" \t\r\n");
-  return compiler::ascii::same(std::filesystem::path(name).extension().string(), ".json") ||
-         (first != std::string_view::npos && words[first] == '{');
-}
-
-std::optional<std::string> formatted_json(const compiler::SourceMap& sources, compiler::FileId file,
-                                          compiler::Diagnostics& diagnostics) {
-  const auto root = compiler::json::read(sources, file, diagnostics);
-  if (!root) return std::nullopt;
-  return compiler::json::formatted(sources, file, *root);
-}
-
-std::optional<std::string> formatted_program(const compiler::SourceMap& sources,
-                                             compiler::FileId file,
-                                             compiler::Diagnostics& diagnostics) {
-  const compiler::ast::Tree tree = compiler::parse(sources, file, diagnostics);
-  if (diagnostics.errors() > 0) return std::nullopt;
-  return compiler::formatted(sources, file, tree);
-}
-
 // The formatted text; nothing if it has errors, which are printed.
 std::optional<std::string> formatted(const std::string& name, const std::string& text) {
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(name, text);
-  std::optional<std::string> result = is_json(name, text)
-                                          ? formatted_json(sources, file, diagnostics)
-                                          : formatted_program(sources, file, diagnostics);
+  std::optional<std::string> result = tool::formatted(sources, file, diagnostics);
   diagnostics.finish();
   if (diagnostics.errors() > 0)
     std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr())

@@ -67,7 +67,6 @@ Json board_json(const link::HelloReply& board, std::span<const std::byte> image)
               {"step_budget", board.step_budget},
               {"drivers", board.drivers},
               {"receive_window", board.receive_window},
-              {"stopped", board.stopped != 0},
               {"program", nullptr}};
   if (board.running != 0) {
     object["program"] = {{"hash", text_of(board.program_hash)}, {"bytes", board.image_bytes}};
@@ -90,17 +89,16 @@ Json status_json(const Past& past) {
           {"last_fault", last_fault_json(past)}};
 }
 
-// The board's buses: `said` is the board's report about the program in `bytes`.
+// The board's buses: `said` is the board's report about the program `image`; null: none.
 struct Buses {
-  Buses(std::span<const std::byte> bytes, const link::Devices& said) : clears(said.bus_clears) {
-    vm::Image image;
-    if (vm::verify(bytes, vm::Limits{}, image).ok()) devices = on_buses(image, said);
+  Buses(const vm::Image* image, const link::Devices& said) : clears(said.bus_clears) {
+    if (image != nullptr) devices = on_buses(*image, said);
   }
   std::vector<OnBus> devices;
   unsigned clears;
 };
 
-// What the running program in `bytes` is kept from, and by what.
+// What keeps the running program in `bytes` from its actuators.
 struct Now {
   Now(Client& client, std::span<const std::byte> bytes) {
     const bool good = vm::verify(bytes, vm::Limits{}, image).ok();
@@ -188,7 +186,7 @@ void info(const std::string& port, Format format) {
   const std::vector<link::ThreadInfo> threads = session.client.threads();
   const std::vector<std::byte> image = session.client.running_image();
   const Now now(session.client, image);
-  const Buses buses(image, session.client.devices());
+  const Buses buses(now.names.image, session.client.devices());
   const link::Kept kept = session.client.kept();
   const link::Authority owner = session.client.authority();
   format == Format::json

@@ -71,6 +71,8 @@ public:
   [[gnu::always_inline]] bool has(unsigned rule) const {
     return (words_[rule / kBits] & bit(rule)) != 0;
   }
+  // Bit r % 32 of word r / 32: rule r.
+  std::span<const Word> words() const { return {words_, count_}; }
 
   void clear() {
     for (; summary_ != 0; summary_ &= summary_ - 1)

@@ -89,7 +89,7 @@ void SafetyRules::latch_fresh() {
 // words may keep state. Returns the rule after that condition.
 [[gnu::always_inline]] inline const vm::Rule* SafetyRules::evaluate(const vm::Rule& rule) {
   const vm::Value danger = truth_of(rule);
-  const bool was_tripped = is_tripped(rule);
+  const bool was_tripped = !tripped_.empty() && tripped_.has(number_of(rule));
   const bool trips = !was_tripped && danger != vm::kFalse;
   if (trips) layers_.outputs.halt(halted_by(rule));
   tell_zero_divide(rule);
@@ -148,11 +148,8 @@ bool SafetyRules::has_ever_tripped(unsigned number) const {
 }
 
 void SafetyRules::fill_tripped_now(std::span<std::uint32_t> bits) const {
-  for (const vm::Rule& rule : rules()) {
-    const unsigned number = number_of(rule);
-    if (is_tripped(rule) && number / kBits < bits.size())
-      bits[number / kBits] |= std::uint32_t{1} << number % kBits;
-  }
+  std::ranges::copy(tripped_.words().first(std::min(tripped_.words().size(), bits.size())),
+                    bits.begin());
 }
 
 std::size_t SafetyRules::fill_tripped(std::span<std::uint32_t> keys) const {

@@ -56,7 +56,7 @@ public:
   // Evaluates all rules. Returns the time at which a time word of theirs is due.  [safety thread]
   kernel::Time look();
 
-  // Bit r of `bits`: rule r is tripped now.  [any]
+  // Bit r of `bits`, which are 0: rule r is tripped now. Only under Kernel::lock().  [any]
   void fill_tripped_now(std::span<std::uint32_t> bits) const;
   // The rules that have tripped since start(), as their rule_key()s. Returns how many; those that find no room are left out.  [any]
   std::size_t fill_tripped(std::span<std::uint32_t> keys) const;
@@ -79,9 +79,6 @@ private:
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
   void note_trip(unsigned number);
-  [[gnu::always_inline]] bool is_tripped(const vm::Rule& rule) const {
-    return !tripped_.empty() && tripped_.has(number_of(rule));
-  }
   bool has_ever_tripped(unsigned number) const;
   std::span<const vm::Rule> rules() const { return {first_rule_, end_rule_}; }
   kernel::Time next_look();

@@ -88,9 +88,9 @@ def look_at_program(table, board, port, folder):
     commands = [event for event in map(json.loads, said) if event["event"] == "command"]
     table.equal("commands of a program that a reading makes move once", 1, len(commands))
     rsc.run("stop", "--port", port)
-    table.equal("stopped, after `rsc stop`", True, rsc.info(port)["board"]["stopped"])
+    table.equal("stopped, after `rsc stop`", True, rsc.info(port)["state"]["stopped"])
     rsc.run("resume", "--port", port)
-    table.equal("stopped, after `rsc resume`", False, rsc.info(port)["board"]["stopped"])
+    table.equal("stopped, after `rsc resume`", False, rsc.info(port)["state"]["stopped"])
     look_at_store(table, port)
     late = sum(thread["missed_deadlines"] for thread in rsc.info(port)["threads"])
     table.equal("deadlines that its threads have missed", 0, late)

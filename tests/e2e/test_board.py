@@ -148,7 +148,7 @@ class EveryBoard(TraceTest):
         self.upload(self.compile(COMPANION / "robot.rsl", config))
         for verb, stopped in (("stop", True), ("resume", False)):
             rsc.run(verb, "--port", self.board.port)
-            self.assertEqual(rsc.info(self.board.port)["board"]["stopped"], stopped)
+            self.assertEqual(rsc.info(self.board.port)["state"]["stopped"], stopped)
 
     def test_what_it_has_not_is_refused_before(self):
         config, program = self.folder / "robot.json", self.folder / "robot.rsl"

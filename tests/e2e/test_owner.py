@@ -145,7 +145,7 @@ class Owner(Switched):
             rsc.run("stop", "--port", line.port)
             rsc.run("resume", "--port", line.port)
         before = rsc.info(self.board.port)
-        self.assertFalse(before["board"]["stopped"])
+        self.assertFalse(before["state"]["stopped"])
         other = ("--key", self.folder / "other")
         rsc.run("keygen", *other)
         for arguments in (("upload", image), ("resume",), ("unpair",), ("feed", "touch.LEVEL=1")):
@@ -162,7 +162,7 @@ class Owner(Switched):
         rsc.run("stop", "--port", self.board.port)  # everybody may send it
         self.refused("the robot's owner has the key", "resume", *other)
         rsc.run("resume", "--port", self.board.port)  # waits until the board verifies signatures again
-        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        self.assertFalse(rsc.info(self.board.port)["state"]["stopped"])
         thread = self.link_thread()
         self.assertLess(thread["stack_used"] + SPARE, thread["stack_bytes"])
 

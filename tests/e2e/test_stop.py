@@ -80,9 +80,9 @@ class Stop(RobotTest):
         self.say("upload", image)
         self.feed(20)
         self.assertEqual(self.pulses(), {})
-        self.assertTrue(rsc.info(self.board.port)["board"]["stopped"])
+        self.assertTrue(rsc.info(self.board.port)["state"]["stopped"])
         self.say("resume")
-        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        self.assertFalse(rsc.info(self.board.port)["state"]["stopped"])
         self.feed(5, 20)
         self.await_motor(SEVENTY_PERCENT)
 

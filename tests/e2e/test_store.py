@@ -161,7 +161,7 @@ class Failed(Switched):
         gdb = self.folder / "gdb"
         self.power_cycle("-gdb", f"unix:{gdb},server=on,wait=off")
         self.await_kept("kept")
-        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        self.assertFalse(rsc.info(self.board.port)["state"]["stopped"])
         with Debugger(gdb) as debugger:
             debugger.run_to(symbols(FIRMWARE)[IN_SAFETY], lambda: None)
             debugger.set_register(PC, endless_loop())
@@ -169,9 +169,9 @@ class Failed(Switched):
         while self.status()["reset_reason"] != "watchdog":
             self.assertLess(time.monotonic(), give_up)
         self.await_kept("kept")
-        self.assertTrue(rsc.info(self.board.port)["board"]["stopped"])
+        self.assertTrue(rsc.info(self.board.port)["state"]["stopped"])
         rsc.run("resume", "--port", self.board.port)
-        self.assertFalse(rsc.info(self.board.port)["board"]["stopped"])
+        self.assertFalse(rsc.info(self.board.port)["state"]["stopped"])
 
 
 class Numbers(Switched):

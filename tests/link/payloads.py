@@ -140,7 +140,7 @@ def tables():
     for name, number, direction, doc in listed:
         camel = "".join(word.capitalize() for word in name.split("_"))
         payload = PAYLOADS.get(name, [camel] if camel in known else [])
-        lines += [f"#### `{name}`: {number}, {SIDES[direction]}", "", f"{doc[0].upper()}{doc[1:]}.", ""]
+        lines += [f"#### `{name}`: {number}, {SIDES[direction]}", "", doc[0].upper() + doc[1:] + ("" if doc.endswith("?") else "."), ""]
         if payload:
             lines += [*_table(known[payload[0]]), ""]
         if name in FOLLOWED:

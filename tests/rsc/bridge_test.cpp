@@ -214,6 +214,28 @@ TEST_CASE("a robot on a broker: what it does is published, and it is fed, stoppe
   CHECK(late.wait_for("robosync/pet/online", "false"));
 }
 
+TEST_CASE("a bridge begins with what is known, tripped, halted and stopped") {
+  const Broker broker;
+  Subscriber subscriber(broker);
+  const Device device;
+  const std::string guarded = device.write(
+      "guarded.rsl",
+      "REMEMBER count = 4\nSAFETY far\n  WHEN touch LEVEL > 8\n  DO STOP left_arm\nEND\n"
+      "WHEN touch LEVEL < 3 DO\n  MOVE left_arm SLOWLY TO 90deg\n  SET count TO 5\nEND\n");
+  REQUIRE(device.run({"feed", "touch.LEVEL=9", "--upload", guarded, "--watch", "200ms"}).exit == 0);
+  REQUIRE(device.run({"stop"}).exit == 0);
+  RunningBridge bridge(device, broker, "pet", "500ms");
+  const auto reading = subscriber.wait_for("robosync/pet/sensors/touch/LEVEL", R"("value":9)");
+  REQUIRE(reading);
+  CHECK(json::parse(*reading).at("t_us") > 200'000);  // of the moment at which it was asked for
+  CHECK(subscriber.wait_for("robosync/pet/variables/count", R"("value":4)"));
+  CHECK(subscriber.wait_for("robosync/pet/safety/line 2", "trip"));
+  CHECK(subscriber.wait_for("robosync/pet/actuators/left_arm", "halt"));
+  CHECK(subscriber.wait_for("robosync/pet/stopped", "true"));
+  bridge.join();
+  CHECK(bridge.outcome.exit == 0);
+}
+
 TEST_CASE("without --name, the topics begin with the robot's own name, if it has one") {
   const Broker broker;
   Subscriber subscriber(broker);

@@ -27,6 +27,7 @@ using test::Bridge;
 using test::Device;
 using test::Folder;
 using test::listen_at;
+using test::open_pty_master;
 using test::Outcome;
 using test::RobotFolder;
 
@@ -202,6 +203,22 @@ TEST_CASE("a program for another board than the one on the line is refused, and 
   }
   CHECK(json::parse(device.run({"info", "--format", "json"}).out).at("status").at("activations") ==
         1);
+}
+
+TEST_CASE("feed uploads a program that takes too long only with --anyway") {
+  const Device device;
+  json robot = json::parse(test::kRobot);
+  robot["board"] = "mps2-an386";
+  (void)device.write("robot.json", robot.dump());
+  const std::string busy =
+      device.write("busy.rsl",
+                   "REMEMBER round = 0\nEVERY 1ms DO\n  REPEAT 900 TIMES\n    SET round TO (round "
+                   "* 3 + 1) MOD 1000\n"
+                   "  END\nEND\nWHEN touch LEVEL > 3 DO\n  MOVE left_arm TO 1deg\nEND\n");
+  const Outcome outcome = device.run({"feed", "touch.LEVEL=2", "--upload", busy});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("error[E0412]"));
+  CHECK(device.run({"feed", "touch.LEVEL=2", "--upload", busy, "--anyway"}).exit == 0);
 }
 
 TEST_CASE("a program for another robot is refused with both names, except with --anyway") {
@@ -569,14 +586,6 @@ TEST_CASE("the line may be TCP") {
   for (const std::string& wrong :
        {std::to_string(same_below_65536), std::string("0"), std::string("x")})
     CHECK(test::rsc({"info", "--port", "tcp:localhost:" + wrong}).exit == 2);
-}
-
-int open_pty_master() {
-  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
-  REQUIRE(master >= 0);
-  REQUIRE(grantpt(master) == 0);
-  REQUIRE(unlockpt(master) == 0);
-  return master;
 }
 
 TEST_CASE("the line may be a pty") {

@@ -52,6 +52,8 @@ TEST_CASE("a robot.json is formatted, too") {
   CHECK_THAT(outcome.err,
              Contains("error[E0201]") && Contains("1 error,") && Contains("it is unchanged"));
   CHECK(folder.read("wrong.json") == "{\"sensors\": [}\n");
+  // Its name tells, too.
+  CHECK_THAT(test::rsc({"fmt", folder.write("begun.JSON", "[1,\n")}).err, Contains("error[E0201]"));
 }
 
 TEST_CASE("a program with a mistake stays as it is, and the others are written") {

@@ -294,6 +294,16 @@ TEST_CASE("dump refuses a damaged image with the reason") {
   CHECK_THAT(outcome.err, Contains("text.rsb"));
 }
 
+TEST_CASE("run says that nothing reports without a scenario, if there is a sensor") {
+  const RobotFolder robot;
+  constexpr const char* kNote = "without a scenario no sensor reports anything";
+  CHECK_THAT(test::rsc({"run", robot.program}).err, Contains(kNote));
+  const std::string scenario = robot.write("none.json", R"({"duration": "1s"})");
+  CHECK_THAT(test::rsc({"run", robot.program, "--scenario", scenario}).err, !Contains(kNote));
+  const std::string blind = robot.write("blind.rsl", "AT START DO\n  LOG \"x\"\nEND\n");
+  CHECK_THAT(test::rsc({"run", blind}).err, !Contains(kNote));
+}
+
 TEST_CASE("run shows what happened, in words and as a trace") {
   const RobotFolder robot;
   const std::string scenario = robot.write("visit.json", R"({"duration": "3s", "stimuli": [

@@ -280,6 +280,14 @@ TEST_CASE("a value that no sample of its sensor measures is pointed out") {
                     "  EXPECT NO LOG \"x\" WITHIN 1s\n")
                  .out,
              !Contains("warning"));
+  // Two values at one time, before the next sample.
+  const std::string both = tested(
+                               "  AT 1005ms button = \"pressed\"\n"
+                               "  AT 1005ms button = \"released\"\n"
+                               "  AT 1010ms button = \"released\"\n")
+                               .out;
+  CHECK_THAT(both, Contains("6 |   AT 1005ms button = \"pressed\"\n"));
+  CHECK_THAT(both, Contains("7 |   AT 1005ms button = \"released\"\n"));
   // The test ends before the next sample.
   CHECK_THAT(tested("  AT 1005ms button = \"pressed\"\n").out, Contains("never sees this"));
 }

@@ -127,7 +127,13 @@ TEST_CASE("a reading that is fed leads to a command, and the trace shows it") {
   CHECK(count(list, EventKind::fire) == 1);
   CHECK(count(list, EventKind::command) == 1);
 
+  // A hello ends the trace on the board; the client switches it on again.
+  (void)client.hello();
+  CHECK(client.feed({.channel = 0, .at_us = 0, .value = 4000}).error == link::FeedError::none);
+  CHECK(count(events(client, milliseconds(200)), EventKind::input) == 1);
+
   client.set_trace(false);
+  (void)client.hello();
   CHECK(client.feed({.channel = 0, .at_us = 0, .value = 5000}).error == link::FeedError::none);
   CHECK(events(client, milliseconds(200)).empty());
 
