@@ -29,7 +29,7 @@ constexpr std::uint32_t kChannels = 1U << kGoOn | 1U << kCount | 1U << kSample;
 
 constexpr unsigned kLooks = 200;  // polls (happens()): 12 us
 
-// 14 bits become 16. The mean voltage follows the samples as a filter of 10 Hz does.
+// 14 bits become 16. The mean voltage follows the samples like a low-pass filter: 8000 / 128 / 2 pi is 10 Hz.
 constexpr std::int32_t kSteps = 4;
 constexpr std::int32_t kMeanParts = 128;
 
