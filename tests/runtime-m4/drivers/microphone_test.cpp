@@ -131,8 +131,9 @@ TEST_CASE("microphone: after a gap no pitch is that of the sound before it") {
   const auto tone = [](double hertz) {
     Block block;
     for (std::size_t s = 0; s < block.size(); ++s)
-      block[s] = static_cast<std::int16_t>(
-          8000 * std::sin(2 * std::numbers::pi * hertz * static_cast<double>(s) / drivers::kEarRate));
+      block[s] =
+          static_cast<std::int16_t>(8000 * std::sin(2 * std::numbers::pi * hertz *
+                                                    static_cast<double>(s) / drivers::kEarRate));
     return block;
   };
   test::NotingBoard board;
