@@ -1,6 +1,6 @@
 // The drivers of this firmware, found by their number in the image: static dispatch over
-// vm/drivers.def, one .cpp file for each. No driver blocks, allocates, or keeps state of its own
-// (microphone.hpp).
+// vm/drivers.def, one .cpp file for each. No driver blocks, allocates, or keeps state of its own, but for the microphone, whose
+// state the sampler keeps (microphone.hpp).
 #pragma once
 
 #include <array>

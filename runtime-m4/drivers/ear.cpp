@@ -101,14 +101,6 @@ private:
 
 constexpr std::int32_t kPart = 256;
 
-// The peak of a parabola through three neighbours, of which the middle one is the highest.
-template <class Peak>
-Peak between(std::int32_t left, std::int32_t middle, std::int32_t right, std::size_t lag) {
-  const std::int32_t bend = 2 * middle - left - right, slope = right - left;
-  const std::int32_t offset = bend > 0 ? slope * (kPart / 2) / bend : 0;
-  return {static_cast<std::int32_t>(lag) * kPart + offset, middle + slope * offset / (4 * kPart)};
-}
-
 }  // namespace
 
 // The peaks of a sound, shorter lags first.
@@ -120,13 +112,20 @@ struct Ear::Peaks {
     for (std::size_t lag = first_lag + 2; lag <= last_lag; ++lag) {
       const std::int32_t right = comparison.next();
       if (middle > left && middle >= right && count < all.size()) {
-        const auto peak = between<Peak>(left, middle, right, lag - 1);
+        const Peak peak = between(left, middle, right, lag - 1);
         highest = std::max(highest, peak.height);
         all[count++] = {peak.lag * samples_each, peak.height};
       }
       left = middle;
       middle = right;
     }
+  }
+
+  // The peak of a parabola through three neighbours, of which the middle one is the highest.
+  static Peak between(std::int32_t left, std::int32_t middle, std::int32_t right, std::size_t lag) {
+    const std::int32_t bend = 2 * middle - left - right, slope = right - left;
+    const std::int32_t offset = bend > 0 ? slope * (kPart / 2) / bend : 0;
+    return {static_cast<std::int32_t>(lag) * kPart + offset, middle + slope * offset / (4 * kPart)};
   }
 
   std::array<Peak, 32>& all;

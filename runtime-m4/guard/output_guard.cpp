@@ -141,14 +141,11 @@ void OutputGuard::ping(unsigned sensor) {
 // evaluated before their readings are known, so nothing would stop a motor meanwhile. A servo's pulses stay, because a servo
 // that gets the same pulse does not move. Meanwhile nothing drives any pin, not even to its safe state, because that would be
 // the safe state of another actuator.
-//
-// A player is no longer owned, but lags, as long as it has not been told to be silent. Returns those that still must be.
-OutputGuard::Mask OutputGuard::switch_off(const vm::Image* next) {
+void OutputGuard::switch_off(const vm::Image* next) {
   Mask owned = 0;
-  Mask sounding = 0;
   {
     const auto lock = kernel_.lock();
-    owned = std::exchange(owned_, 0) | lagging_;
+    owned = std::exchange(owned_, 0);
     free_ = lagging_ = 0;
   }
   take_back_all_but(next != nullptr ? measured_by(*next) : 0);
@@ -156,34 +153,28 @@ OutputGuard::Mask OutputGuard::switch_off(const vm::Image* next) {
   if (speaker() != 0) board_.sound(0);
   switch_chips_off();
   for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
-    Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
+    const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
     const bool moves = next != nullptr && next->has_safety() && vm::gives_power(slot.driver);
-    if ((next == nullptr || !drives(*next, slot) || moves) && !switch_off(slot))
-      sounding |= left & -left;
+    if (next == nullptr || !drives(*next, slot) || moves) switch_off(slot);
   }
   lights_ = speaker_ = on_chips_ = 0;
-  return sounding;
 }
 
-// False: not yet.
-bool OutputGuard::switch_off(Slot& slot) {
+void OutputGuard::switch_off(const Slot& slot) {
   if (vm::drives_player(slot.driver)) {
-    slot.target = 0;
-    const auto passed = static_cast<std::uint16_t>(kernel_.now() / 1000 - slot.changed);
-    if (passed < policy::kPlayerGapMs) return false;
-    say(slot, 0);
+    ended_player_ = slot;
+    silence_ended_player(kernel_.now());
   } else if (is_on_panel(slot.driver)) {
     board_.panel().show(0);
   } else {
     board_.pwm_write(slot.pin, 0);
   }
-  return true;
 }
 
 void OutputGuard::disown() {
   end_measurements();
   listen(false);
-  lagging_ = switch_off(nullptr);
+  switch_off(nullptr);
 }
 
 void OutputGuard::begin_with(Mask halted) {
@@ -218,15 +209,13 @@ OutputGuard::Mask OutputGuard::own_actuators(const vm::Image& image) {
 }
 
 void OutputGuard::own(const vm::Image& image) {
-  const Mask sounding = switch_off(&image);
-  const Slot player = slots_[static_cast<unsigned>(std::countr_zero(sounding)) % slots_.size()];
+  switch_off(&image);
   if (boards::kHasPanel) free_panel_pin(image);
   Mask owned = own_actuators(image);
   own_chips(image);
   own_displays(image);
   owned |= on_chips_;
   apart_ |= on_chips_;
-  if (sounding != 0) silence_later(player, owned);
   let_go_of(measured_by(image));
   listen(std::ranges::any_of(
       image.sensors, [](const vm::Sensor& sensor) { return vm::is_microphone(sensor.driver); }));
@@ -350,6 +339,7 @@ void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
 }
 
 void OutputGuard::go_on(kernel::Time now) {
+  if (boards::kHasSerialLine && ended_player_) silence_ended_player(now);
   for (Mask left = lagging_; left != 0; left &= left - 1) {
     const auto actuator = static_cast<unsigned>(std::countr_zero(left));
     if (vm::is_told(slots_[actuator].driver)) {
@@ -622,9 +612,18 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
     panel_pin_ = wiring.pin;
     on_panel_ = 0;
     board_.panel().begin(policy::panel_of(wiring));
+  } else {
+    const auto lock = kernel_.lock();
+    ended_player_.reset();
   }
   lagging_ |= bit(actuator);
   apart_ |= bit(actuator);
+}
+
+// The device has just been told something.
+bool OutputGuard::needs_time(const Slot& slot, kernel::Time now) {
+  const std::uint16_t gap = is_on_panel(slot.driver) ? policy::kPanelGapMs : policy::kPlayerGapMs;
+  return static_cast<std::uint16_t>(now / 1000 - slot.changed) < gap;
 }
 
 // Sends the order, unless the device still needs time after the previous one. Sending a picture takes long, so no lock is held
@@ -632,12 +631,10 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
 [[gnu::noinline]] void OutputGuard::tell(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
   const bool panel = is_on_panel(slot.driver);
-  const auto at = static_cast<std::uint16_t>(now / 1000);
-  const std::uint16_t gap = panel ? policy::kPanelGapMs : policy::kPlayerGapMs;
-  if (static_cast<std::uint16_t>(at - slot.changed) < gap) return;
+  if (needs_time(slot, now)) return;
   {
     const auto lock = kernel_.lock();
-    slot.changed = at;
+    slot.changed = static_cast<std::uint16_t>(now / 1000);
     lagging_ &= ~bit(actuator);
     if (!panel) return say(slot, slot.target);
   }
@@ -648,12 +645,11 @@ void OutputGuard::say(const Slot& player, std::uint16_t sound) {
   board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
 }
 
-// The player of the program before takes a slot that no actuator needs until it is told. A board has one line (boards/pins.hpp).
-void OutputGuard::silence_later(const Slot& player, Mask owned) {
-  if (owned == ~Mask{0}) return say(player, 0);
-  const auto place = static_cast<unsigned>(std::countr_one(owned));
-  slots_[place] = player;
-  lagging_ |= bit(place);
+void OutputGuard::silence_ended_player(kernel::Time now) {
+  const auto lock = kernel_.lock();
+  if (!ended_player_ || needs_time(*ended_player_, now)) return;
+  say(*ended_player_, 0);
+  ended_player_.reset();
 }
 
 // If the next program has another use for the panel's pin, the panel's picture goes too: something else is wired there.

@@ -44,6 +44,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
@@ -175,15 +176,16 @@ private:
   void tell(unsigned actuator, kernel::Time now);
   void say(const Slot& player, std::uint16_t sound);
   void free_panel_pin(const vm::Image& next);
-  [[nodiscard]] bool switch_off(Slot& slot);
-  void silence_later(const Slot& player, Mask owned);
+  void switch_off(const Slot& slot);
+  static bool needs_time(const Slot& slot, kernel::Time now);
+  void silence_ended_player(kernel::Time now);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
   [[nodiscard]] Pins measured_by(const vm::Image& image) const;
   void take_back_all_but(Pins measured);
   void let_go_of(Pins measured);
   void listen(bool on);
-  [[nodiscard]] Mask switch_off(const vm::Image* next);
+  void switch_off(const vm::Image* next);
   void own_lights(unsigned actuator, vm::Release safe);
   [[nodiscard]] Mask own_actuators(const vm::Image& image);
   void own_chips(const vm::Image& image);
@@ -225,6 +227,8 @@ private:
   std::array<Slot, vm::kMaxActuators> slots_{};
   std::array<Display, vm::kMaxDisplays> displays_{};
   std::uint8_t display_count_ = 0;
+  // Its program has ended, and it has not been told yet to be silent. A board has one line (boards/pins.hpp).
+  std::optional<Slot> ended_player_;
   std::uint16_t panel_pin_ = kNoPin;  // of the board's panel; kept after its program has ended
   std::uint32_t on_panel_ = 0;        // the picture for the panel
 };

@@ -73,7 +73,8 @@ target_sources(robosync_runtime PRIVATE
 if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
     drivers/axes.cpp drivers/hts221.cpp drivers/lights.cpp drivers/lsm303agr.cpp drivers/lsm6dsl.cpp drivers/max34451.cpp
-    drivers/microphone.cpp drivers/motor.cpp drivers/mpu6050.cpp drivers/pca9685.cpp drivers/pca9685_servo.cpp drivers/power.cpp drivers/pwm.cpp
+    drivers/microphone.cpp drivers/motor.cpp drivers/mpu6050.cpp drivers/pca9685.cpp drivers/pca9685_servo.cpp drivers/power.cpp
+    drivers/pwm.cpp
     drivers/served.cpp drivers/servo.cpp drivers/six_axes.cpp drivers/ssd1306.cpp drivers/ssd1306_face.cpp drivers/tones.cpp
     drivers/virtual_output.cpp drivers/vl53l0x.cpp drivers/ws2812_face.cpp
     PROPERTIES COMPILE_OPTIONS -Os)

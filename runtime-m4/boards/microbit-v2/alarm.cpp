@@ -15,13 +15,13 @@ namespace microbit = boards::microbit;
 
 void set_alarm(std::uint32_t counts) {
   const bool missed = microbit::begin_alarm(counts);
-  core::enable_interrupt(microbit::timer::kInterrupt, core::kSwitchPriority);
-  if (missed) core::pend_interrupt(microbit::timer::kInterrupt);
+  core::enable_interrupt(microbit::kClockInterrupt, core::kSwitchPriority);
+  if (missed) core::pend_interrupt(microbit::kClockInterrupt);
 }
 
 void clear_alarm() {
   microbit::end_alarm();
-  core::clear_interrupt(microbit::timer::kInterrupt);
+  core::clear_interrupt(microbit::kClockInterrupt);
 }
 
 }  // namespace robosync::port::hooks

@@ -21,18 +21,12 @@ struct Input {
 };
 constexpr std::array kInputs{Input{0, 1}, Input{1, 2}, Input{2, 3}};
 
-// One poll takes at least a cycle of the peripherals' 16 MHz: 31 us in all, and 6 more until the converter has stopped.
+// Polls (happens()): 31 us in all, and 6 more until the converter has stopped.
 constexpr unsigned kLooks = 500;
 constexpr unsigned kLooksAtStop = 100;
 constexpr unsigned kLooksAtCalibration = 10'000;
 
 alignas(4) volatile std::int16_t result;  // slightly negative values count as 0
-
-bool happens(Register event, unsigned& looks) {
-  for (; looks > 0; --looks)
-    if (event.read() != 0) return true;
-  return false;
-}
 
 // Waits until it has stopped: after an earlier start, results are undefined.
 void stop() {

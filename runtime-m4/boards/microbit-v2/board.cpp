@@ -32,7 +32,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   speaker::start();
   microphone::start();
   player::start();
-  port::core::enable_interrupt(row_timer::kInterrupt);
+  port::core::enable_interrupt(kRowInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
   for (I2c& bus : i2c_)
@@ -143,7 +143,7 @@ void robosync::boards::switch_outputs_off() {
 }
 
 const std::uint32_t robosync::port::hooks::kTickCounts =
-    robosync::boards::microbit::timer::kHz / 1'000'000 * robosync::kernel::kTick;
+    robosync::boards::microbit::Timer::kHz / 1'000'000 * robosync::kernel::kTick;
 
 extern "C" {
 

@@ -12,9 +12,9 @@ constexpr std::uint32_t kSlack = 8;   // counts until a write takes effect
 
 bool start_clock() {
   flash::kInstructionCache.write(flash::kOn);
-  timer::kWidth.write(timer::k32Bits);
-  timer::kPrescaler.write(0);
-  timer::kStart.write(kDoIt);
+  kClockTimer.width().write(Timer::k32Bits);
+  kClockTimer.prescaler().write(Timer::kEachCount);
+  kClockTimer.start().write(kDoIt);
   clock::kCrystalRuns.write(0);
   clock::kStartCrystal.write(kDoIt);
   for (unsigned i = 0; i < kLooks; ++i)
@@ -24,15 +24,15 @@ bool start_clock() {
 
 bool begin_alarm(std::uint32_t counts) {
   const std::uint32_t begin = counted();
-  timer::kAlarm.value().write(begin + counts);
-  forget(timer::kAlarm.reached());
-  timer::kInterruptOn.write(timer::kAlarm.interrupt());
+  kClockTimer.value(kAlarm).write(begin + counts);
+  forget(kClockTimer.reached(kAlarm));
+  kClockTimer.interrupts_on().write(Timer::interrupt(kAlarm));
   return counted() - begin + kSlack >= counts;
 }
 
 void end_alarm() {
-  timer::kInterruptOff.write(timer::kAlarm.interrupt());
-  forget(timer::kAlarm.reached());
+  kClockTimer.interrupts_off().write(Timer::interrupt(kAlarm));
+  forget(kClockTimer.reached(kAlarm));
 }
 
 }  // namespace robosync::boards::microbit

@@ -11,12 +11,15 @@ namespace robosync::boards::microbit {
 // crystal. False when the crystal does not start: the board is broken.
 [[nodiscard]] bool start_clock();
 
+// Channels of kClockTimer.
+inline constexpr unsigned kAlarm = 0, kReading = 1;
+
 // Counts up, in 1/16 us. [any processor state]
 //
 // An interrupt between the two lines may read the clock, too, and leave a later count here, which is just as right.
 inline std::uint32_t counted() {
-  timer::kReading.capture().write(kDoIt);
-  return timer::kReading.value().read();
+  kClockTimer.capture(kReading).write(kDoIt);
+  return kClockTimer.value(kReading).read();
 }
 
 // TIMER0 requests its interrupt once, after so many counts. True if that time may have passed already, so that it was missed.

@@ -34,12 +34,6 @@ constexpr unsigned end_of_pulse(std::size_t i) {
   return static_cast<unsigned>(kInputs.size() + i);
 }
 
-void join(unsigned channel, Register event, Register task) {
-  ppi::event(channel).write(static_cast<std::uint32_t>(event.address));
-  ppi::task(channel).write(static_cast<std::uint32_t>(task.address));
-  ppi::kOn.write(1U << channel);
-}
-
 void ignore_edges(std::size_t i) {
   gpiote::kInterruptOff.write(1U << edges(i));
   gpiote::configuration(edges(i)).write(gpiote::kOff);
@@ -49,13 +43,14 @@ void ignore_edges(std::size_t i) {
 }  // namespace
 
 void start() {
-  echo_timer::kWidth.write(timer::k32Bits);
-  echo_timer::kPrescaler.write(echo_timer::kMicroseconds);
+  kEchoTimer.width().write(Timer::k32Bits);
+  kEchoTimer.prescaler().write(Timer::kMicroseconds);
   for (std::size_t i = 0; i < kInputs.size(); ++i) {
-    join(edges(i), gpiote::edge(edges(i)), echo_timer::capture(time_of_edge(i)));
-    join(pulse(i), echo_timer::reached(end_of_pulse(i)), gpiote::set_low(pulse(i)));
+    ppi::join(edges(i), gpiote::edge(edges(i)), kEchoTimer.capture(time_of_edge(i)));
+    ppi::join(pulse(i), kEchoTimer.reached(end_of_pulse(i)), gpiote::set_low(pulse(i)));
+    ppi::kOn.write(1U << edges(i) | 1U << pulse(i));
   }
-  echo_timer::kStart.write(kDoIt);
+  kEchoTimer.start().write(kDoIt);
 }
 
 // Edges from before the ping are discarded. The lock keeps interrupts out between the pulse's start and the setting of its end.
@@ -72,8 +67,8 @@ void ping(std::uint16_t trigger, std::uint16_t echo) {
   }
   gpiote::configuration(pulse(i)).write(gpiote::drives(*output));
   gpiote::set_high(pulse(i)).write(kDoIt);
-  echo_timer::capture(end_of_pulse(i)).write(kDoIt);
-  const Register end = echo_timer::value(end_of_pulse(i));
+  kEchoTimer.capture(end_of_pulse(i)).write(kDoIt);
+  const Register end = kEchoTimer.value(end_of_pulse(i));
   end.write(end.read() + kPulse);
 }
 
@@ -93,7 +88,7 @@ void on_edge() {
   for (std::size_t i = 0; i < kInputs.size(); ++i) {
     if (gpiote::edge(edges(i)).read() == 0) continue;
     forget(gpiote::edge(edges(i)));
-    if (echoes[i].edge(is_high(kInputs[i]), echo_timer::value(time_of_edge(i)).read()))
+    if (echoes[i].edge(is_high(kInputs[i]), kEchoTimer.value(time_of_edge(i)).read()))
       ignore_edges(i);
   }
 }

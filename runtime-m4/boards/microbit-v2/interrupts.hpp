@@ -17,7 +17,7 @@ namespace robosync::boards {
 inline constexpr std::size_t kInterrupts = 48;
 inline constexpr std::array kUsedInterrupts{Interrupt{microbit::uart::kInterrupt, Uart0_Handler},
                                             Interrupt{microbit::gpiote::kInterrupt, Echo_Handler},
-                                            Interrupt{microbit::row_timer::kInterrupt, Row_Handler},
+                                            Interrupt{microbit::kRowInterrupt, Row_Handler},
                                             Interrupt{microbit::kTwim0.interrupt, OwnBus_Handler},
                                             Interrupt{microbit::kTwim1.interrupt, EdgeBus_Handler},
                                             Interrupt{microbit::kPwm0.interrupt, Pwm_Handler},

@@ -57,10 +57,10 @@ void start() {
   for (const auto* pins : {&kRows, &kColumns})
     for (const Pin& pin : *pins)
       pin.configuration().write(Pin::kStrongOutput);
-  row_timer::kPrescaler.write(row_timer::kMicroseconds);
-  row_timer::kValue.write(kRowTime);
-  row_timer::kShortcuts.write(row_timer::kBeginAgain);
-  row_timer::kInterruptOn.write(row_timer::kWhenReached);
+  kRowTimer.prescaler().write(Timer::kMicroseconds);
+  kRowTimer.value(0).write(kRowTime);
+  kRowTimer.shortcuts().write(Timer::kBeginAgain);
+  kRowTimer.interrupts_on().write(Timer::interrupt(0));
   runs = false;
 }
 
@@ -70,16 +70,16 @@ void show(std::uint32_t picture) {
   if (picture == 0) return all_dark();
   if (runs) return;
   runs = true;
-  row_timer::kStart.write(kDoIt);
+  kRowTimer.start().write(kDoIt);
 }
 
 // The old row goes dark first, or its lights would glow in the columns of the next one.
 void next_row() {
   const port::Alone alone;
-  forget(row_timer::kReached);
+  forget(kRowTimer.reached(0));
   kRows[row].set_low().write(kRows[row].mask());
   if (shown == 0) {
-    row_timer::kStop.write(kDoIt);
+    kRowTimer.stop().write(kDoIt);
     runs = false;
     return;
   }

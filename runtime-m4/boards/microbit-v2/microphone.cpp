@@ -27,10 +27,9 @@ constexpr std::uint32_t kFirstBlock = kSoundBlock / 2;
 constexpr unsigned kGoOn = 4, kCount = 5, kSample = 6;
 constexpr std::uint32_t kChannels = 1U << kGoOn | 1U << kCount | 1U << kSample;
 
-// One poll takes at least a cycle of the peripherals' 16 MHz.
-constexpr unsigned kLooks = 200;
+constexpr unsigned kLooks = 200;  // polls (happens()): 12 us
 
-// 14 bits become 16. The mean voltage follows the samples as a filter of 10 Hz does.
+// 14 bits become 16. The mean voltage follows the samples like a low-pass filter: 8000 / 128 / 2 pi is 10 Hz.
 constexpr std::int32_t kSteps = 4;
 constexpr std::int32_t kMeanParts = 128;
 
@@ -41,25 +40,14 @@ bool knows_mean;
 std::uint32_t heard;  // blocks, since it runs
 std::int32_t mean;    // in parts of a step
 
-bool happens(Register event) {
-  for (unsigned looks = kLooks; looks > 0; --looks)
-    if (event.read() != 0) return true;
-  return false;
-}
-
-void join(unsigned channel, Register event, Register task) {
-  ppi::event(channel).write(static_cast<std::uint32_t>(event.address));
-  ppi::task(channel).write(static_cast<std::uint32_t>(task.address));
-}
-
 void next_to(Block& block, std::uint32_t count) {
   saadc::kResultsTo.write(port::bus_address(block.data()));
   saadc::kResultCount.write(count);
 }
 
 std::uint32_t ended() {
-  kBlockCounter.capture().write(kDoIt);
-  return kBlockCounter.value().read();
+  kBlockCounter.capture(0).write(kDoIt);
+  return kBlockCounter.value(0).read();
 }
 
 void begin() {
@@ -68,7 +56,8 @@ void begin() {
   next_to(blocks[0], kFirstBlock);
   forget(saadc::kStarted);
   saadc::kStart.write(kDoIt);
-  runs = happens(saadc::kStarted);
+  unsigned looks = kLooks;
+  runs = happens(saadc::kStarted, looks);
   if (!runs) return;
   next_to(blocks[1], kSoundBlock);
   ppi::kOn.write(kChannels);
@@ -81,7 +70,8 @@ void end() {
   ppi::kOff.write(kChannels);
   forget(saadc::kStopped);
   saadc::kStop.write(kDoIt);
-  static_cast<void>(happens(saadc::kStopped));
+  unsigned looks = kLooks;
+  static_cast<void>(happens(saadc::kStopped, looks));
   runs = false;
 }
 
@@ -114,14 +104,14 @@ void take(Block& block, std::size_t count, SoundBlock sound) {
 void start() {
   kPower.set_low().write(kPower.mask());
   kPower.configuration().write(Pin::kStrongOutput);
-  join(kGoOn, saadc::kEnded, saadc::kStart);
-  join(kCount, saadc::kEnded, kBlockCounter.count());
-  join(kSample, kSampleTimer.reached(), saadc::kSample);
-  kSampleTimer.shortcuts().write(SoundTimer::kBeginAgain);
-  kSampleTimer.prescaler().write(SoundTimer::k16MHz);
-  kSampleTimer.value().write(kCounts);
-  kBlockCounter.mode().write(SoundTimer::kCountsEvents);
-  kBlockCounter.width().write(timer::k32Bits);
+  ppi::join(kGoOn, saadc::kEnded, saadc::kStart);
+  ppi::join(kCount, saadc::kEnded, kBlockCounter.count());
+  ppi::join(kSample, kSampleTimer.reached(0), saadc::kSample);
+  kSampleTimer.shortcuts().write(Timer::kBeginAgain);
+  kSampleTimer.prescaler().write(Timer::kEachCount);
+  kSampleTimer.value(0).write(kCounts);
+  kBlockCounter.mode().write(Timer::kCountsTasks);
+  kBlockCounter.width().write(Timer::k32Bits);
   kBlockCounter.start().write(kDoIt);
 }
 

@@ -22,6 +22,13 @@ inline void forget(Register event) {
   static_cast<void>(event.read());
 }
 
+// Polls, at most as often as `looks` says, which counts down: a poll takes at least a cycle of the peripherals' 16 MHz.
+inline bool happens(Register event, unsigned& looks) {
+  for (; looks > 0; --looks)
+    if (event.read() != 0) return true;
+  return false;
+}
+
 namespace clock {
 inline constexpr Register kStartCrystal{0x4000'0000};
 inline constexpr Register kCrystalRuns{0x4000'0100};  // event
@@ -128,66 +135,48 @@ inline constexpr Register kSendFrom{kBase + 0x544};
 inline constexpr Register kSendCount{kBase + 0x548};  // of 16 bits
 }  // namespace panel_spi
 
-namespace timer {  // TIMER0, which counts while the core sleeps; SysTick does not
-inline constexpr unsigned kInterrupt = 8;
-inline constexpr std::uint32_t kHz = 16'000'000;
-inline constexpr Register kStart{0x4000'8000};
-inline constexpr Register kInterruptOn{0x4000'8304};
-inline constexpr Register kInterruptOff{0x4000'8308};
-inline constexpr Register kWidth{0x4000'8508};
-inline constexpr std::uint32_t k32Bits = 3;
-inline constexpr Register kPrescaler{0x4000'8510};
-
-struct Channel {
-  unsigned index;
-  constexpr Register capture() const { return {0x4000'8040 + std::uintptr_t{4} * index}; }
-  constexpr Register reached() const { return {0x4000'8140 + std::uintptr_t{4} * index}; }
-  constexpr Register value() const { return {0x4000'8540 + std::uintptr_t{4} * index}; }
-  constexpr std::uint32_t interrupt() const { return 1U << (16 + index); }
-};
-inline constexpr Channel kAlarm{0};
-inline constexpr Channel kReading{1};
-}  // namespace timer
-
-namespace echo_timer {  // TIMER3, which counts microseconds
-inline constexpr std::uintptr_t kBase = 0x4001'A000;
-inline constexpr Register kStart{kBase};
-inline constexpr Register kWidth{kBase + 0x508};
-inline constexpr Register kPrescaler{kBase + 0x510};
-inline constexpr std::uint32_t kMicroseconds = 4;  // 16 MHz / 16
-constexpr Register capture(unsigned channel) {
-  return {kBase + 0x040 + std::uintptr_t{4} * channel};
-}
-constexpr Register reached(unsigned channel) {
-  return {kBase + 0x140 + std::uintptr_t{4} * channel};
-}
-constexpr Register value(unsigned channel) {
-  return {kBase + 0x540 + std::uintptr_t{4} * channel};
-}
-}  // namespace echo_timer
-
-// TIMER4, which asks for the samples of sound, and TIMER2, which counts their blocks.
-struct SoundTimer {
+struct Timer {
   std::uintptr_t base;
 
   constexpr Register start() const { return {base}; }
   constexpr Register stop() const { return {base + 0x004}; }
   constexpr Register count() const { return {base + 0x008}; }
   constexpr Register clear() const { return {base + 0x00C}; }
-  constexpr Register capture() const { return {base + 0x040}; }
-  constexpr Register reached() const { return {base + 0x140}; }
+  constexpr Register capture(unsigned channel) const {
+    return {base + 0x040 + std::uintptr_t{4} * channel};
+  }
+  constexpr Register reached(unsigned channel) const {  // event
+    return {base + 0x140 + std::uintptr_t{4} * channel};
+  }
   constexpr Register shortcuts() const { return {base + 0x200}; }
+  constexpr Register interrupts_on() const { return {base + 0x304}; }
+  constexpr Register interrupts_off() const { return {base + 0x308}; }
   constexpr Register mode() const { return {base + 0x504}; }
   constexpr Register width() const { return {base + 0x508}; }
   constexpr Register prescaler() const { return {base + 0x510}; }
-  constexpr Register value() const { return {base + 0x540}; }
+  constexpr Register value(unsigned channel) const {
+    return {base + 0x540 + std::uintptr_t{4} * channel};
+  }
 
-  static constexpr std::uint32_t kBeginAgain = 1U << 0;
-  static constexpr std::uint32_t kCountsEvents = 1;
-  static constexpr std::uint32_t k16MHz = 0;
+  static constexpr std::uint32_t kHz = 16'000'000;
+  static constexpr std::uint32_t kEachCount = 0;     // prescaler
+  static constexpr std::uint32_t kMicroseconds = 4;  // 16 MHz / 16
+  static constexpr std::uint32_t k32Bits = 3;        // 16 after reset
+  static constexpr std::uint32_t kCountsTasks = 1;
+  static constexpr std::uint32_t kBeginAgain = 1U << 0;  // when channel 0 is reached
+  static constexpr std::uint32_t interrupt(unsigned channel) { return 1U << (16 + channel); }
 };
-inline constexpr SoundTimer kSampleTimer{0x4001'B000};
-inline constexpr SoundTimer kBlockCounter{0x4000'A000};
+// TIMER0, which counts while the core sleeps; SysTick does not.
+inline constexpr Timer kClockTimer{0x4000'8000};
+inline constexpr unsigned kClockInterrupt = 8;
+// TIMER1, which switches to the next row of the lights.
+inline constexpr Timer kRowTimer{0x4000'9000};
+inline constexpr unsigned kRowInterrupt = 9;
+// TIMER2, which counts blocks of sound, and TIMER4, which asks for its samples.
+inline constexpr Timer kBlockCounter{0x4000'A000};
+inline constexpr Timer kSampleTimer{0x4001'B000};
+// TIMER3, which measures echoes in microseconds.
+inline constexpr Timer kEchoTimer{0x4001'A000};
 
 namespace gpiote {  // channels that drive a pin by tasks, or report its edges as events
 inline constexpr unsigned kInterrupt = 6;
@@ -225,6 +214,11 @@ constexpr Register event(unsigned channel) {
 constexpr Register task(unsigned channel) {
   return {kBase + 0x514 + std::uintptr_t{8} * channel};
 }
+// No effect before the channel is on.
+inline void join(unsigned channel, Register its_event, Register its_task) {
+  event(channel).write(static_cast<std::uint32_t>(its_event.address));
+  task(channel).write(static_cast<std::uint32_t>(its_task.address));
+}
 }  // namespace ppi
 
 namespace saadc {  // measures voltages, and writes the results to memory by DMA
@@ -258,21 +252,6 @@ inline constexpr std::uint32_t kMeanOf8 = 3;
 inline constexpr Register kResultsTo{kBase + 0x62C};
 inline constexpr Register kResultCount{kBase + 0x630};
 }  // namespace saadc
-
-namespace row_timer {  // TIMER1, which switches to the next row of the lights
-inline constexpr unsigned kInterrupt = 9;
-inline constexpr Register kStart{0x4000'9000};
-inline constexpr Register kStop{0x4000'9004};
-inline constexpr Register kReached{0x4000'9140};  // event: it has reached kValue
-inline constexpr Register kShortcuts{0x4000'9200};
-inline constexpr std::uint32_t kBeginAgain = 1U << 0;
-inline constexpr Register kInterruptOn{0x4000'9304};
-inline constexpr std::uint32_t kWhenReached = 1U << 16;
-inline constexpr Register kPrescaler{0x4000'9510};
-inline constexpr std::uint32_t kMicroseconds =
-    4;  // 16 MHz / 16; the timer has 16 bits, its reset value
-inline constexpr Register kValue{0x4000'9540};
-}  // namespace row_timer
 
 namespace watchdog {  // WDT, on the 32,768 Hz oscillator
 inline constexpr std::uint32_t kHz = 32'768;

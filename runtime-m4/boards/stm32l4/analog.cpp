@@ -1,7 +1,7 @@
 // See analog.hpp. ST's RM0351, 18 (ADC): the steps follow 18.4.6 to 18.4.9.
 //
-// A measurement takes 15 and 653 cycles of 40 MHz, 17 us: less than two thread switches take, so the thread polls. Interrupts are still
-// taken.
+// A measurement takes 15 and 653 cycles of 40 MHz, 17 us: less than two thread switches take, so the thread polls. Interrupts are
+// still taken.
 #include "runtime-m4/boards/stm32l4/analog.hpp"
 
 #include "runtime-m4/boards/board.hpp"

@@ -312,19 +312,29 @@ std::optional<Block> hear() {
   return block;
 }
 
-// Calls hear() at these times, in ms.
-class Calls {
+// A microphone that is on, and looked at.
+class Listening {
 public:
-  explicit Calls(Chip& chip) : chip_(chip), begin_(chip.now) {}
+  explicit Listening(Chip& chip) : chip_(chip), begin_(chip.now) { microphone::listen(true); }
+
+  // So many ms after it was switched on.
   std::optional<Block> at(double ms) {
+    ms_ = ms;
     const auto due = begin_ + static_cast<std::uint64_t>(ms * kMs);
     if (chip_.now < due) chip_.pass(due - chip_.now);
     return hear();
+  }
+  std::optional<Block> after(double ms) { return at(ms_ + ms); }
+  // The next ones, 20 ms apart, go to nobody.
+  void pass_over(unsigned calls) {
+    for (; calls > 0; --calls)
+      static_cast<void>(after(20));
   }
 
 private:
   Chip& chip_;
   std::uint64_t begin_;
+  double ms_ = 0;
 };
 
 // Another voltage every 125 us.
@@ -370,10 +380,7 @@ TEST_CASE("microphone: it has power as long as it is on, and off nothing convert
 
 TEST_CASE("microphone: 8,000 samples a second") {
   Chip chip;
-  microphone::listen(true);
-  Calls calls(chip);
-  for (int i = 0; i <= 50; ++i)
-    static_cast<void>(calls.at(20 * i));
+  Listening(chip).pass_over(51);
   CHECK(std::abs(static_cast<int>(chip.written.size()) - 8000) <= 1);
 }
 
@@ -381,14 +388,13 @@ TEST_CASE(
     "microphone: all blocks come complete and in their order, however early or late it is called") {
   Chip chip;
   chip.volts = noise;
-  microphone::listen(true);
-  Calls calls(chip);
+  Listening listening(chip);
   std::mt19937 draw(1);
   std::uniform_real_distribution<double> late(-9.5, 9.5);
-  CHECK_FALSE(calls.at(0));
-  CHECK_FALSE(calls.at(20));  // the first one is half a block
+  CHECK_FALSE(listening.at(0));
+  CHECK_FALSE(listening.at(20));  // the first one is half a block
   for (int i = 2; i < 60; ++i) {
-    const auto block = calls.at(20 * i + late(draw));
+    const auto block = listening.at(20 * i + late(draw));
     REQUIRE(block);
     const auto place = place_of(*block, chip.written);
     CAPTURE(i);
@@ -401,15 +407,13 @@ TEST_CASE(
     "microphone: a block that is not the next one is not given away, and after that they go on") {
   Chip chip;
   chip.volts = noise;
-  microphone::listen(true);
-  Calls calls(chip);
+  Listening listening(chip);
   std::mt19937 draw(GENERATE(range(1, 6)));
   std::uniform_real_distribution<double> gap(1, 55);
-  double at = 0;
   std::size_t next = 0;
   unsigned given = 0;
   for (int i = 0; i < 60; ++i) {
-    const auto block = calls.at(at += gap(draw));
+    const auto block = listening.after(gap(draw));
     if (!block) continue;
     ++given;
     const auto place = place_of(*block, chip.written);
@@ -418,28 +422,25 @@ TEST_CASE(
     next = *place + kBlock;
   }
   CHECK(given > 0);
+  listening.pass_over(3);
   for (int i = 0; i < 3; ++i)
-    static_cast<void>(calls.at(at += 20));
-  for (int i = 0; i < 3; ++i)
-    CHECK(calls.at(at += 20));
+    CHECK(listening.after(20));
 }
 
 TEST_CASE("microphone: a block that is overwritten while it is taken is not given away") {
   Chip chip;
   chip.volts = noise;
-  microphone::listen(true);
-  Calls calls(chip);
-  for (int i = 0; i < 3; ++i)
-    static_cast<void>(calls.at(20 * i));
-  CHECK(calls.at(60));
+  Listening listening(chip);
+  listening.pass_over(3);
+  CHECK(listening.after(20));
   chip.on_pointer = [&] {
     chip.on_pointer = {};
     chip.pass(25 * kMs);
   };
-  CHECK_FALSE(calls.at(80));
+  CHECK_FALSE(listening.after(20));
   chip.on_pointer = {};
-  CHECK_FALSE(calls.at(125));
-  CHECK(calls.at(145));
+  CHECK_FALSE(listening.after(45));
+  CHECK(listening.after(20));
 }
 
 TEST_CASE("microphone: the mean voltage is taken away, and a tone stays") {
@@ -449,11 +450,9 @@ TEST_CASE("microphone: the mean voltage is taken away, and a tone stays") {
     chip.volts = [=](double seconds) {
       return bias + height * std::sin(2 * std::numbers::pi * 440 * seconds);
     };
-    microphone::listen(true);
-    Calls calls(chip);
-    for (int i = 0; i < 10; ++i)
-      static_cast<void>(calls.at(20 * i));
-    const auto block = calls.at(200);
+    Listening listening(chip);
+    listening.pass_over(10);
+    const auto block = listening.after(20);
     REQUIRE(block);
     // A step is a quarter of the supply, divided by 4 times 2^16; the converter rounds to four of them.
     const double full = kSupply / 4 / 4;
@@ -470,11 +469,9 @@ TEST_CASE("microphone: louder than the converter can take is as loud as it can b
   chip.volts = [](double seconds) {
     return kBias + 0.5 * std::sin(2 * std::numbers::pi * 440 * seconds);
   };
-  microphone::listen(true);
-  Calls calls(chip);
-  for (int i = 0; i < 10; ++i)
-    static_cast<void>(calls.at(20 * i));
-  const auto block = calls.at(200);
+  Listening listening(chip);
+  listening.pass_over(10);
+  const auto block = listening.after(20);
   REQUIRE(block);
   CHECK(std::ranges::max(*block) > 30'000);
   CHECK(std::ranges::min(*block) < -30'000);
@@ -484,23 +481,18 @@ TEST_CASE(
     "microphone: a converter that does not answer is looked at a little, and heard when it does") {
   for (const Breaks breaks : {Breaks::starts, Breaks::ends}) {
     Chip chip;
-    microphone::listen(true);
-    Calls calls(chip);
-    int ms = 0;
-    for (; ms < 100; ms += 20)
-      static_cast<void>(calls.at(ms));
+    Listening listening(chip);
+    listening.pass_over(5);
     chip.broken = breaks;
-    static_cast<void>(calls.at(ms += 20));  // it may have a block from before
-    static_cast<void>(calls.at(ms += 20));
+    listening.pass_over(2);  // it may have a block from before
     for (int i = 0; i < 10; ++i) {
       const unsigned before = chip.accesses;
-      CHECK_FALSE(calls.at(ms += 20));
+      CHECK_FALSE(listening.after(20));
       CHECK(chip.accesses - before <= kMostAccesses);
     }
     chip.broken = Breaks::nothing;
-    for (int i = 0; i < 3; ++i)
-      static_cast<void>(calls.at(ms += 20));
-    CHECK(calls.at(ms += 20));
+    listening.pass_over(3);
+    CHECK(listening.after(20));
   }
 }
 
@@ -508,17 +500,14 @@ TEST_CASE("microphone: while it is on, no ring is measured; afterwards they are 
   Chip chip;
   std::uint16_t voltage = 0;
   REQUIRE(boards::microbit::analog::read(0, voltage));
-  microphone::listen(true);
-  Calls calls(chip);
-  for (int i = 0; i < 3; ++i)
-    static_cast<void>(calls.at(20 * i));
+  Listening listening(chip);
+  listening.pass_over(3);
   CHECK_FALSE(boards::microbit::analog::read(0, voltage));
-  CHECK(calls.at(60));
+  CHECK(listening.after(20));
   microphone::listen(false);
   REQUIRE(boards::microbit::analog::read(0, voltage));
   CHECK(voltage == 2048);
   microphone::listen(true);
-  static_cast<void>(calls.at(80));
-  static_cast<void>(calls.at(100));
-  CHECK(calls.at(120));
+  listening.pass_over(2);
+  CHECK(listening.after(20));
 }

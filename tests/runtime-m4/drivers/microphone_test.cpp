@@ -127,6 +127,39 @@ TEST_CASE("microphone: after a gap nothing of the sound before it is heard") {
   CHECK(value < 35 * vm::kScale);
 }
 
+TEST_CASE("microphone: after a gap no pitch is that of the sound before it") {
+  const auto tone = [](double hertz) {
+    Block block;
+    for (std::size_t s = 0; s < block.size(); ++s)
+      block[s] =
+          static_cast<std::int16_t>(8000 * std::sin(2 * std::numbers::pi * hertz *
+                                                    static_cast<double>(s) / drivers::kEarRate));
+    return block;
+  };
+  test::NotingBoard board;
+  const Block before = tone(200), after = tone(310);
+  const Block* next = &before;
+  board.sound_of = [&](boards::SoundBlock sound) {
+    if (next != nullptr) std::ranges::copy(*next, sound.begin());
+    return next != nullptr;
+  };
+  drivers::Microphone microphone;
+  vm::Channel pitch{};
+  pitch.input = 2;
+  vm::Value value = 0;
+  for (int i = 0; i < 3; ++i)
+    REQUIRE(microphone.sample(board, true, pitch, value));
+  next = nullptr;
+  CHECK_FALSE(microphone.sample(board, true, pitch, value));
+  next = &after;
+  REQUIRE(microphone.sample(board, true, pitch, value));
+  const Heard wanted = drivers::Ear().hear(after);
+  CHECK(value == wanted.pitch);
+  pitch.input = 3;
+  REQUIRE(microphone.sample(board, false, pitch, value));
+  CHECK(value == wanted.clarity);
+}
+
 TEST_CASE("microphone: a clap is heard, and one block that is lost is none") {
   const auto clap = [](unsigned now) -> std::optional<Block> {
     std::mt19937 draw(now);
@@ -194,6 +227,10 @@ TEST_CASE("microphone: it is on while a program uses it, and only then") {
   CHECK(rig.board.listened.back());
   REQUIRE(rig.activate(test::compile(kLoud, fed)).ok());
   rig.run(300);
+  CHECK_FALSE(rig.board.listened.back());
+  REQUIRE(rig.activate(test::compile(kLoud, real)).ok());
+  CHECK(rig.board.listened.back());
+  rig.runtime.clear();
   CHECK_FALSE(rig.board.listened.back());
 }
 

@@ -233,32 +233,51 @@ TEST_CASE("pca9685: a SAFETY rule that stops one of its servos makes all of them
   CHECK(robot.pulse(12) == 0);
 }
 
-// A halt may come while the driver begins an order.
-TEST_CASE("pca9685: an order that begins during a halt does not move the servo after it") {
+namespace {
+
+// The guard of one servo on a chip that has been set up, without a driver: what a halt meets in between is up to the test.
+struct GuardedArm {
+  explicit GuardedArm(vm::Release safe) {
+    chip.driver = vm::DriverId::pca9685;
+    chip.first_input = kEnable;
+    arm.driver = vm::DriverId::pca9685_servo;
+    arm.pin = 3;
+    arm.safe = safe;
+    image.sensors = std::span(&chip, 1);
+    image.actuators = std::span(&arm, 1);
+    guard.own(image);
+    guard.note_chip_set_up(0);
+  }
+  // True: then `setpoint` is what the chip must get.
+  bool drive(std::uint32_t pulse) {
+    guard.begin_order(0);
+    guard.drive(0, pulse, 0);
+    return has_setpoint();
+  }
+  bool has_setpoint() { return guard.next_setpoint(0, 0, setpoint); }
+  bool is_to_go_off() { return has_setpoint() && setpoint.pulse == 0; }
+  bool is_on() { return board.enabled[kEnable]; }
+
   test::NotingBoard board;
   kernel::Kernel kernel;
-  guard::OutputGuard guard(kernel, board);
+  guard::OutputGuard guard{kernel, board};
   vm::Sensor chip{};
-  chip.driver = vm::DriverId::pca9685;
-  chip.first_input = kEnable;
   vm::Actuator arm{};
-  arm.driver = vm::DriverId::pca9685_servo;
-  arm.pin = 3;
-  arm.safe = vm::Release::coast;
   vm::Image image;
-  image.sensors = std::span(&chip, 1);
-  image.actuators = std::span(&arm, 1);
-  guard.own(image);
-  guard.note_chip_set_up(0);
-  guard.halt(1);
-  guard.begin_order(0);
-  guard.let_go(1);
-  guard.drive(0, 1000, 0);
   guard::OutputGuard::Setpoint setpoint{};
-  CHECK_FALSE(guard.next_setpoint(0, 0, setpoint));
-  guard.begin_order(0);
-  guard.drive(0, 1000, 0);
-  CHECK(guard.next_setpoint(0, 0, setpoint));
+};
+
+}  // namespace
+
+// A halt may come while the driver begins an order.
+TEST_CASE("pca9685: an order that begins during a halt does not move the servo after it") {
+  GuardedArm arm(vm::Release::coast);
+  arm.guard.halt(1);
+  arm.guard.begin_order(0);
+  arm.guard.let_go(1);
+  arm.guard.drive(0, 1000, 0);
+  CHECK_FALSE(arm.has_setpoint());
+  CHECK(arm.drive(1000));
 }
 
 TEST_CASE("pca9685: what holds in its safe state holds, and takes no order") {
@@ -307,56 +326,33 @@ TEST_CASE("pca9685: a servo that would hold does not begin to move in a halt, no
 }
 
 TEST_CASE("pca9685: a servo that holds stays where the chip has it, whatever is on the bus") {
-  test::NotingBoard board;
-  kernel::Kernel kernel;
-  guard::OutputGuard guard(kernel, board);
-  vm::Sensor chip{};
-  chip.driver = vm::DriverId::pca9685;
-  chip.first_input = kEnable;
-  vm::Actuator arm{};
-  arm.driver = vm::DriverId::pca9685_servo;
-  arm.pin = 3;
-  arm.safe = vm::Release::hold;
-  vm::Image image;
-  image.sensors = std::span(&chip, 1);
-  image.actuators = std::span(&arm, 1);
-  guard.own(image);
-  guard.note_chip_set_up(0);
-  guard::OutputGuard::Setpoint setpoint{};
-  const auto drive = [&](std::uint32_t pulse) {
-    guard.begin_order(0);
-    guard.drive(0, pulse, 0);
-    return guard.next_setpoint(0, 0, setpoint);
-  };
-  const auto is_to_go_off = [&] {
-    return guard.next_setpoint(0, 0, setpoint) && setpoint.pulse == 0;
-  };
-  REQUIRE(drive(1000));
-  guard.halt(1);
-  guard.note_setpoint(setpoint);  // it was on the bus
-  CHECK(is_to_go_off());
-  guard.note_setpoint(setpoint);
-  guard.let_go(1);
-  REQUIRE(drive(1000));
-  guard.note_setpoint(setpoint);
-  guard.halt(1);  // the chip has the pulse, and gives none yet
-  guard.let_chip_on(0);
-  CHECK_FALSE(board.enabled[kEnable]);
-  guard.let_go(1);
-  guard.drive(0, 1000, 0);  // no new order
-  CHECK(is_to_go_off());
-  static_cast<void>(drive(1000));
-  guard.let_chip_on(0);
-  REQUIRE(board.enabled[kEnable]);
-  REQUIRE(drive(1100));
-  guard.halt(1);
-  CHECK_FALSE(guard.next_setpoint(0, 0, setpoint));  // the chip has 1000
-  guard.let_go(1);
-  REQUIRE(drive(1200));
-  guard.halt(1);
-  guard.note_setpoint(setpoint);  // it was on the bus
-  CHECK_FALSE(guard.next_setpoint(0, 0, setpoint));
-  CHECK(board.enabled[kEnable]);
+  GuardedArm arm(vm::Release::hold);
+  REQUIRE(arm.drive(1000));
+  arm.guard.halt(1);
+  arm.guard.note_setpoint(arm.setpoint);  // it was on the bus
+  CHECK(arm.is_to_go_off());
+  arm.guard.note_setpoint(arm.setpoint);
+  arm.guard.let_go(1);
+  REQUIRE(arm.drive(1000));
+  arm.guard.note_setpoint(arm.setpoint);
+  arm.guard.halt(1);  // the chip has the pulse, and gives none yet
+  arm.guard.let_chip_on(0);
+  CHECK_FALSE(arm.is_on());
+  arm.guard.let_go(1);
+  arm.guard.drive(0, 1000, 0);  // no new order
+  CHECK(arm.is_to_go_off());
+  static_cast<void>(arm.drive(1000));
+  arm.guard.let_chip_on(0);
+  REQUIRE(arm.is_on());
+  REQUIRE(arm.drive(1100));
+  arm.guard.halt(1);
+  CHECK_FALSE(arm.has_setpoint());  // the chip has 1000
+  arm.guard.let_go(1);
+  REQUIRE(arm.drive(1200));
+  arm.guard.halt(1);
+  arm.guard.note_setpoint(arm.setpoint);  // it was on the bus
+  CHECK_FALSE(arm.has_setpoint());
+  CHECK(arm.is_on());
 }
 
 TEST_CASE("pca9685: without a program that has it, it is off") {
