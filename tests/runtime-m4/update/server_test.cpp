@@ -228,9 +228,10 @@ TEST_CASE("hello stops the trace of an earlier host") {
   tool::Client client(robot);
   REQUIRE(upload(client, test::program(3).bytes()).running == 1);
   client.set_trace(true);
-  client.hello();
-  client.feed({.channel = 0, .at_us = 0, .value = 2000});
-  CHECK(events(client, milliseconds(200)).empty());
+  tool::Client later(robot);
+  later.hello();
+  later.feed({.channel = 0, .at_us = 0, .value = 2000});
+  CHECK(events(later, milliseconds(200)).empty());
 }
 
 TEST_CASE("an activation that is asked for twice is done once") {
