@@ -424,6 +424,20 @@ private:
                                [is](const vm::Actuator& actuator) { return is(actuator.driver); });
   }
 
+  // Lights and sound players, which a board sends their orders besides its pins.
+  void add_parts_that_are_told() {
+    const Instructions period = instructions_in_ms(policy::kSafetyPeriodMs);
+    if (any_actuator(vm::drives_lights))
+      set_.interferences.push_back({"the lights", instructions_in_ms(policy::kRowMs), board_.row});
+    if (any_actuator(vm::drives_player))
+      set_.interferences.push_back(
+          {"the sound player", instructions_in_ms(policy::kPlayerGapMs), board_.say});
+    if (any_actuator(vm::is_strip))
+      set_.interferences.push_back({"the strip of lights", period, board_.strip});
+    else if (any_actuator(vm::drives_panel))
+      set_.interferences.push_back({"the panel", period, board_.panel});
+  }
+
   void add_interferences() {
     const Instructions period = instructions_in_ms(policy::kSafetyPeriodMs);
     set_.interferences.push_back(
@@ -431,13 +445,7 @@ private:
     set_.interferences.push_back({"the serial line",
                                   instructions_in_ms(1000) / board_.line_bytes_per_second,
                                   Instructions{board_.receive} + board_.send});
-    if (any_actuator(vm::drives_lights))
-      set_.interferences.push_back({"the lights", instructions_in_ms(policy::kRowMs), board_.row});
-    if (any_actuator(vm::drives_player))
-      set_.interferences.push_back(
-          {"the sound player", instructions_in_ms(policy::kPlayerGapMs), board_.say});
-    if (any_actuator(vm::drives_panel))
-      set_.interferences.push_back({"the panel", period, board_.panel});
+    add_parts_that_are_told();
     set_.interferences.push_back(
         {"the safety thread", period, board_.wake_by_timer + costs::kMonitor + looks()});
     if (work_.trips() != 0)

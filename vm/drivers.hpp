@@ -16,7 +16,7 @@ namespace robosync::vm {
 //               there, `pin` the chip's channel
 //   screen      a picture on a display, which is among the sensors in the same way
 //   line        commands to a sound player on a serial line of the board, the image's `bus`
-//   panel       a picture on a chain of lights at its pin; a robot has one panel
+//   panel       a picture, or a colour, on a chain of lights at its pin; a robot has one panel
 enum class PinUse : std::uint8_t {
   nothing,
   pulses,
@@ -76,6 +76,10 @@ constexpr bool drives_player(DriverId driver) {
 }
 constexpr bool drives_panel(DriverId driver) {
   return pin_use(driver) == PinUse::panel;
+}
+// All its lights have the same colour.
+constexpr bool is_strip(DriverId driver) {
+  return driver == DriverId::ws2812_strip;
 }
 // It gets its orders in messages, and each message takes time.
 constexpr bool is_told(DriverId driver) {
@@ -200,14 +204,20 @@ constexpr std::uint16_t min_period_ms(DriverId driver) {
   return measures_when_told(driver) ? kMinRangingPeriodMs : 0;
 }
 
-// For a panel, `bus` is the layout of its lights, and `speed_limit` the colour of a lit one, 0xRRGGBB. No component exceeds
-// kMostLight: so 25 white lights take 0.3 A, which a board gets from USB, instead of 1.5 A.
+// For a panel, `bus` is the layout of its lights, and `speed_limit` the colour of a lit one, 0xRRGGBB; for a strip, the number of
+// its lights, and their brightest white. No component exceeds kMostLight: so 25 white lights take 0.3 A, which a board gets from
+// USB, instead of 1.5 A.
 inline constexpr std::uint8_t kPanelGoesBack = 1;  // every second row is wired from right to left
 inline constexpr std::uint8_t kPanelIsLarge =
     2;                                      // 8 x 8 lights, with the picture centred; else 5 x 5
 inline constexpr unsigned kMostLight = 51;  // of 255
-constexpr bool is_panel(std::uint8_t lay, Value color) {
-  if (lay > (kPanelGoesBack | kPanelIsLarge) || color < 0 || color > 0xFF'FFFF) return false;
+inline constexpr unsigned kMostPanelLights = 64;
+constexpr bool is_panel(const Actuator& actuator) {
+  const Value color = actuator.speed_limit;
+  const bool has_layout = is_strip(actuator.driver)
+                              ? actuator.bus > 0 && actuator.bus <= kMostPanelLights
+                              : actuator.bus <= (kPanelGoesBack | kPanelIsLarge);
+  if (!has_layout || color < 0 || color > 0xFF'FFFF) return false;
   for (unsigned part = 0; part < 24; part += 8)
     if ((static_cast<std::uint32_t>(color) >> part & 0xFF) > kMostLight) return false;
   return true;

@@ -104,7 +104,7 @@ enum class VirtualMotion : std::uint8_t {
 // Actuator::bus of a virtual_output: the output of the real one, which gives the time of a command.
 enum class VirtualOutput : std::uint8_t {
   level,    // OVER and then FOR
-  picture,  // SHOW: FOR; BLINK: its TIMES, or OVER
+  picture,  // like level; BLINK: its TIMES, or OVER
   tones,    // FOR, else the melody
 };
 

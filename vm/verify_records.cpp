@@ -254,7 +254,7 @@ Refusal check_output(const Walk& walk, const Actuator& actuator, std::size_t ind
   if (output == kNothing) return Refusal::none;
   if (output == second || is_taken(walk, output, index)) return Refusal::shared_pin;
   if (second != kNothing && is_taken(walk, second, index)) return Refusal::shared_pin;
-  if (second == kPanel && !is_panel(actuator.bus, actuator.speed_limit)) return Refusal::bad_value;
+  if (second == kPanel && !is_panel(actuator)) return Refusal::bad_value;
   return good_or(Refusal::drives_on, !drives_on(actuator.driver) || actuator.safe != Release::hold);
 }
 

@@ -124,14 +124,6 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
     actuator.speed_limit = *limit;
 }
 
-void report_panel_keys(const Fields& fields, Diagnostics& diagnostics) {
-  for (const std::string_view key : panel_keys())
-    if (const auto* value = fields.find(key))
-      diagnostics
-          .report(Code::E0205, "only a panel of lights (`ws2812`) has `" + std::string(key) + "`")
-          .label(value->span);
-}
-
 // A program takes as long as it would with the real actuator.
 void make_virtual(ActuatorConfig& actuator) {
   const vm::DriverId real = actuator.driver;
@@ -203,10 +195,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
       wiring.check_part(fields, part);
   }
-  if (vm::drives_panel(device.actuator.driver))
-    actuator.panel = read_panel(fields, diagnostics);
-  else
-    report_panel_keys(fields, diagnostics);
+  actuator.panel = read_lights(fields, device.actuator.driver, diagnostics);
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);
   if (const auto* sounds = fields.find("sounds"))

@@ -27,13 +27,12 @@ namespace robosync::compiler {
 void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& channel,
                   Diagnostics& diagnostics);
 
-// Reads the layout of a panel's lights, and their colour.
-[[nodiscard]] PanelConfig read_panel(const Fields& fields, Diagnostics& diagnostics);
+// Reads what robot.json says of the lights of a panel or strip, and reports keys that another device has.
+[[nodiscard]] std::optional<PanelConfig> read_lights(Fields& fields, vm::DriverId driver,
+                                                     Diagnostics& diagnostics);
 inline constexpr std::int64_t kUsualPanelPercent = 10;
 inline constexpr std::int64_t kMostPanelPercent = 20;
 [[nodiscard]] std::vector<std::string_view> panel_colors();
-// The keys that only a panel has.
-[[nodiscard]] std::span<const std::string_view> panel_keys();
 
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,

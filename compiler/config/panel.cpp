@@ -1,8 +1,10 @@
-// The lights of a panel: their layout and their colour.
+// The lights of a panel or a strip: their number, their layout and their colour.
 #include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "compiler/config/entries.hpp"
 #include "compiler/config/values.hpp"
@@ -17,10 +19,19 @@ struct Color {
   std::string_view name;
   std::uint8_t red, green, blue;
 };
-constexpr std::array kColors = {Color{"white", 255, 255, 255}, Color{"red", 255, 0, 0},
-                                Color{"orange", 255, 80, 0},   Color{"yellow", 255, 180, 0},
-                                Color{"green", 0, 255, 0},     Color{"cyan", 0, 255, 255},
-                                Color{"blue", 0, 0, 255},      Color{"purple", 180, 0, 255}};
+constexpr std::array kColors = {
+#define COLOR(name, red, green, blue) Color{#name, red, green, blue},
+#include "vm/colors.def"
+#undef COLOR
+};
+
+struct LightKey {
+  std::string_view name;
+  bool of_panel, of_strip;
+};
+constexpr std::array kLightKeys = {
+    LightKey{"size", true, false}, LightKey{"zigzag", true, false}, LightKey{"color", true, false},
+    LightKey{"brightness", true, true}, LightKey{"lights", false, true}};
 
 static_assert(255 * kMostPanelPercent / 100 <= vm::kMostLight);
 
@@ -38,18 +49,12 @@ std::uint32_t dimmed(std::uint8_t part, std::int64_t percent) {
   return part == 0 ? 0 : std::max(rest, 1U);
 }
 
-}  // namespace
-
-std::vector<std::string_view> panel_colors() {
-  std::vector<std::string_view> names(kColors.size());
-  std::ranges::transform(kColors, names.begin(), &Color::name);
-  return names;
-}
-
-std::span<const std::string_view> panel_keys() {
-  static constexpr std::array<std::string_view, 4> kKeys = {"size", "zigzag", "color",
-                                                            "brightness"};
-  return kKeys;
+vm::Value dimmed(const Color& pure, const Fields& fields, Diagnostics& diagnostics) {
+  const auto* brightness = fields.find("brightness");
+  const auto percent =
+      brightness != nullptr ? read_percent(*brightness, diagnostics) : kUsualPanelPercent;
+  return static_cast<vm::Value>(dimmed(pure.red, percent) << 16 | dimmed(pure.green, percent) << 8 |
+                                dimmed(pure.blue, percent));
 }
 
 PanelConfig read_panel(const Fields& fields, Diagnostics& diagnostics) {
@@ -62,13 +67,53 @@ PanelConfig read_panel(const Fields& fields, Diagnostics& diagnostics) {
     panel.lay |= vm::kPanelGoesBack;
   const auto* color = fields.find("color");
   const Color pure = color != nullptr ? read_color(*color, diagnostics) : kColors.front();
-  const auto* brightness = fields.find("brightness");
-  const auto percent =
-      brightness != nullptr ? read_percent(*brightness, diagnostics) : kUsualPanelPercent;
-  panel.color =
-      static_cast<vm::Value>(dimmed(pure.red, percent) << 16 | dimmed(pure.green, percent) << 8 |
-                             dimmed(pure.blue, percent));
+  panel.color = dimmed(pure, fields, diagnostics);
   return panel;
+}
+
+// A strip that is not wired may leave out how many lights it has.
+PanelConfig read_strip(Fields& fields, Diagnostics& diagnostics) {
+  PanelConfig strip{.lay = 1, .color = dimmed(kColors.front(), fields, diagnostics)};
+  const auto* type = fields.find("type");
+  const bool is_virtual = type != nullptr && type->text == "VIRTUAL";
+  const auto* lights =
+      is_virtual ? fields.find("lights") : fields.require("lights", "a `ws2812_strip`");
+  if (lights == nullptr) return strip;
+  const auto count = read_whole(*lights, 1, vm::kMostPanelLights, diagnostics);
+  strip.lay = static_cast<std::uint8_t>(count.value_or(1));
+  return strip;
+}
+
+void report_keys_of_others(const Fields& fields, bool panel, bool strip, Diagnostics& diagnostics) {
+  for (const LightKey& key : kLightKeys) {
+    const auto* value = fields.find(key.name);
+    if (value == nullptr || (panel && key.of_panel) || (strip && key.of_strip)) continue;
+    const std::string_view which = !key.of_strip   ? "a panel of lights (`ws2812`)"
+                                   : !key.of_panel ? "a strip of lights (`ws2812_strip`)"
+                                                   : "a panel or strip of lights (`ws2812`, "
+                                                     "`ws2812_strip`)";
+    auto& error = diagnostics.report(Code::E0205, fmt::format("only {} has `{}`", which, key.name))
+                      .label(value->span);
+    if (strip && key.name == "color")
+      error.helps("the program gives a strip its colour: `LIGHT eyes red`");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string_view> panel_colors() {
+  std::vector<std::string_view> names(kColors.size());
+  std::ranges::transform(kColors, names.begin(), &Color::name);
+  return names;
+}
+
+std::optional<PanelConfig> read_lights(Fields& fields, vm::DriverId driver,
+                                       Diagnostics& diagnostics) {
+  const bool strip = vm::is_strip(driver), panel = vm::drives_panel(driver) && !strip;
+  report_keys_of_others(fields, panel, strip, diagnostics);
+  if (strip) return read_strip(fields, diagnostics);
+  if (panel) return read_panel(fields, diagnostics);
+  return std::nullopt;
 }
 
 }  // namespace robosync::compiler

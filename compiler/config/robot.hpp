@@ -112,10 +112,10 @@ struct ServoChip {
   bool operator==(const ServoChip&) const = default;
 };
 
-// A panel of lights, encoded as in the image (vm::is_panel()).
+// A panel or strip of lights, encoded as in the image (vm::is_panel()).
 struct PanelConfig {
   std::uint8_t lay = 0;
-  vm::Value color = 0;  // of a light that is on
+  vm::Value color = 0;  // of a light that is on; the brightest white of a strip
 };
 
 struct ActuatorConfig {

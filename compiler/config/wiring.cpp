@@ -523,17 +523,17 @@ void WiringReader::check_panel(const Fields& fields, const Wiring& wiring) {
     panel_ = span;
     return;
   }
-  diagnostics_.report(Code::E0207, "a robot can have only one panel of lights")
+  diagnostics_.report(Code::E0207, "a robot can have only one panel or strip of lights")
       .label(span)
       .label(*panel_, "the first one", false);
 }
 
 void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) {
   if (!board_.panels.empty())
-    return report_no_pin(value, pin, " is not for a panel of lights",
+    return report_no_pin(value, pin, " is not for a panel or strip of lights",
                          "pins that are: ", board_.panels);
   if (board_.named == Board::Named::wrongly) return;
-  diagnostics_.report(Code::E0205, "the board " + board_.name + " has no pin for a panel of lights")
+  diagnostics_.report(Code::E0205, "the board " + board_.name + " has no pin for a panel or strip of lights")
       .label(value.span)
       .helps("boards that have one: " + boards_with_panels());
 }

@@ -63,7 +63,7 @@ public:
   // For a sound player.
   void check_line(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
-  // For a panel of lights. A robot has at most one.
+  // For a panel or strip of lights. A robot has at most one.
   void check_panel(const Fields& fields, const Wiring& wiring);
   // For lights, speakers and microphones, which can only be parts of a board.
   void check_part(const Fields& fields, const Board::Part* part);

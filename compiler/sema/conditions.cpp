@@ -151,7 +151,7 @@ void Expressions::report_word_comparison(const ast::Comparison& node, const Type
   }
 }
 
-bool Expressions::learns_words(const Typed& word) {
+bool Expressions::learns_words(const Typed& word) const {
   return word.code.operation == Operation::input && names_.channel(word.code.channel).learns_words;
 }
 

@@ -55,7 +55,7 @@ public:
   [[nodiscard]] Typed number(const ast::Expr& expr);
   [[nodiscard]] Typed any(const ast::Expr& expr);
   // Is it a channel whose words are those that the program compares it with?
-  [[nodiscard]] bool learns_words(const Typed& word);
+  [[nodiscard]] bool learns_words(const Typed& word) const;
   [[nodiscard]] Typed number_of(Typed result);  // reports any other type
   [[nodiscard]] Typed operand(const ast::Operand& operand, Span span);
 

@@ -108,6 +108,8 @@ std::string place_of(const vm::Actuator& actuator) {
 
 // A panel has a colour instead of a speed limit.
 std::string limit_of(const vm::Actuator& actuator) {
+  if (vm::is_strip(actuator.driver))
+    return fmt::format("white {:06x}, {} lights", actuator.speed_limit, actuator.bus);
   if (vm::drives_panel(actuator.driver))
     return fmt::format("colour {:06x}, lights {} x {}{}", actuator.speed_limit,
                        (actuator.bus & vm::kPanelIsLarge) != 0 ? "8" : "5",

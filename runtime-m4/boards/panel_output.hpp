@@ -12,8 +12,8 @@ public:
   // Begins with the program's panel, all dark; the panel itself learns this only with the first picture. Until end() the pin
   // belongs to the panel alone, and is low between two pictures.
   virtual void begin(const policy::Panel& /*panel*/) {}
-  // Shows a picture, in the format of Board::show(). It is sent in the background. The rest of an unfinished picture is dropped,
-  // which nobody can see.
+  // Shows a picture, in the format of Board::show(), or the colour of a strip, 0xRRGGBB. It is sent in the background. The rest
+  // of an unfinished picture is dropped, which nobody can see.
   virtual void show(std::uint32_t /*picture*/) {}
   // Returns the pin to its earlier use, immediately.
   virtual void end() {}

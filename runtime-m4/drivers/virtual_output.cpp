@@ -29,8 +29,12 @@ kernel::Duration said(const Order& order, vm::Param param) {
   return duration_of(order.get(param, 0));
 }
 
+kernel::Duration shown(const Order& order) {
+  return said(order, vm::Param::over) + said(order, vm::Param::for_);
+}
+
 kernel::Duration picture(const Order& order) {
-  if (order.action != vm::Action::play) return said(order, vm::Param::for_);
+  if (order.action != vm::Action::play) return shown(order);
   const Blink blink = blink_of(order);
   return blink.legs * blink.leg;
 }
@@ -50,7 +54,7 @@ kernel::Duration length_of(const Device& device, const Order& order) {
     case vm::VirtualOutput::tones:
       return tune(order);
     default:
-      return said(order, vm::Param::over) + said(order, vm::Param::for_);
+      return shown(order);
   }
 }
 

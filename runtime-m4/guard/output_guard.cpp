@@ -273,7 +273,9 @@ void OutputGuard::show(unsigned actuator, std::uint32_t picture) {
   const auto lock = kernel_.lock();
   if (!is_free(actuator)) return;
   if ((lights() & bit(actuator)) != 0) return board_.show(picture);
-  if (is_on_panel(slots_[actuator].driver) && picture != on_panel_) {
+  const vm::DriverId driver = slots_[actuator].driver;
+  if (boards::kHasPanel && vm::is_strip(driver)) picture = policy::limited_color(picture);
+  if (is_on_panel(driver) && picture != on_panel_) {
     on_panel_ = picture;
     lagging_ |= bit(actuator);
   }

@@ -76,7 +76,7 @@ public:
   void begin_order(unsigned actuator);
   // Pulse of an actuator with two pins: on the first pin if positive, on the second if negative.
   void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
-  // The picture on the lights (boards::Board::show()), or on the actuator's display or panel.
+  // The picture on the lights (boards::Board::show()), or on the actuator's display or panel; for a strip, its colour.
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
   void sound(unsigned actuator, std::uint32_t hertz);

@@ -68,7 +68,7 @@ target_sources(robosync_runtime PRIVATE
   drivers/virtual_sensor.cpp
   drivers/vl53l0x.cpp
   drivers/way.cpp
-  drivers/ws2812_face.cpp)
+  drivers/ws2812_face.cpp drivers/ws2812_strip.cpp)
 # In rsc the drivers of hardware are not time-critical, since a simulated robot has none: small code is worth more there.
 if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
   set_source_files_properties(
@@ -76,7 +76,7 @@ if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
     drivers/microphone.cpp drivers/motor.cpp drivers/mpu6050.cpp drivers/pca9685.cpp drivers/pca9685_servo.cpp drivers/power.cpp
     drivers/pwm.cpp
     drivers/served.cpp drivers/servo.cpp drivers/six_axes.cpp drivers/ssd1306.cpp drivers/ssd1306_face.cpp drivers/tones.cpp
-    drivers/virtual_output.cpp drivers/vl53l0x.cpp drivers/ws2812_face.cpp
+    drivers/virtual_output.cpp drivers/vl53l0x.cpp drivers/ws2812_face.cpp drivers/ws2812_strip.cpp
     PROPERTIES COMPILE_OPTIONS -Os)
 endif()
 set_source_files_properties(layers/median.cpp PROPERTIES

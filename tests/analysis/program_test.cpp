@@ -364,6 +364,8 @@ TEST_CASE("what actuators are told takes its time, in programs that have them") 
   const policy::BoardCosts& board = costs_of_board("microbit-v2");
   CHECK(cost_of(set_with(R"("type": "GPIO", "pin": 0, "device": "ws2812")"), "the panel") ==
         board.panel);
+  CHECK(cost_of(set_with(R"("type": "GPIO", "pin": 0, "device": "ws2812_strip", "lights": 8)"),
+                "the strip of lights") == board.strip);
   CHECK(cost_of(set_with(R"("device": "lights")"), "the lights") == board.row);
   CHECK(cost_of(set_with(R"("type": "UART", "bus": 1, "device": "dfplayer")"),
                 "the sound player") == board.say);

@@ -159,7 +159,7 @@ std::string wiring_keys(const Device& device) {
   if (vm::is_analog(driver_of(device)))
     return row({"`pin`", "an analog input of the board", "required"});
   if (vm::drives_panel(driver_of(device)))
-    return row({"`pin`", "an output of the board that can drive a panel", "required"});
+    return row({"`pin`", "an output of the board that can drive a panel or strip", "required"});
   if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, backward", "required"});
   else if (type->pin)
@@ -236,9 +236,13 @@ std::string actuator_keys(const Device& device) {
     std::vector<std::string> colors;
     for (const std::string_view color : panel_colors())
       colors.push_back(code(color));
-    rows += row({"`size`", "`5x5`, `8x8`", "`5x5`"});
-    rows += row({"`zigzag`", "true: every second row is wired from right to left", "false"});
-    rows += row({"`color`", joined(colors), colors.front()});
+    if (vm::is_strip(actuator.driver)) {
+      rows += row({"`lights`", fmt::format("1 to {}: how many", vm::kMostPanelLights), "required"});
+    } else {
+      rows += row({"`size`", "`5x5`, `8x8`", "`5x5`"});
+      rows += row({"`zigzag`", "true: every second row is wired from right to left", "false"});
+      rows += row({"`color`", joined(colors), colors.front()});
+    }
     rows += row({"`brightness`", fmt::format("1 to {}, in percent", kMostPanelPercent),
                  std::to_string(kUsualPanelPercent)});
   }

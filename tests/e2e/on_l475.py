@@ -76,7 +76,9 @@ PORT_A, OF_SPI, OF_TIMER = 0x4800_0000, 5, 2
 SERVO = {"board": "b-l475e-iot01a", "sensors": PANEL["sensors"], "actuators": [{"name": "arm", "type": "PWM", "pin": 11, "device": "servo"}]}
 MOVES = "WHEN near X > 10 DO MOVE arm TO 10deg END\n"
 TELL = "robosync::guard::OutputGuard::tell("
-COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
+COST_OF_PANEL, COST_OF_STRIP = (re.compile(rf"^COST\({name},\s*(\d+),", re.M) for name in ("panel", "strip"))
+STRIP = PANEL | {"actuators": [{"name": "eyes", "pin": 11, "device": "ws2812_strip", "lights": 64, "brightness": 20}]}
+FADES = "EVERY 300ms DO LIGHT eyes TO 77.7% OVER 77ms\nTHEN\nBLINK eyes purple END\n"
 
 
 class KeptInFlash(test_store.Switched):
@@ -340,14 +342,20 @@ class Panel(DebuggedTest):
         self.assertEqual((self.function(wires), self.told(SPI_CONTROL)[-1]), (OF_TIMER, 0))
 
     def test_what_a_picture_costs(self):
-        self.begin(PANEL, CHANGES)
+        self.compare_cost(PANEL, CHANGES, COST_OF_PANEL)
+
+    def test_what_a_colour_of_a_strip_costs(self):
+        self.compare_cost(STRIP, FADES, COST_OF_STRIP)
+
+    def compare_cost(self, robot, program, cost):
+        self.begin(robot, program)
         tell, counts = next(at for name, at in symbols(FIRMWARE).items() if name.startswith(TELL)), []
         with self.debugger() as debugger:
             for _ in range(CALLS):
                 debugger.run_to(tell, lambda: None)
                 counts.append(debugger.steps_to_return())
-        said = int(COST_OF_PANEL.search(COSTS.read_text())[1])
-        print(f"\n  a picture: {max(counts)}, said {said}")
+        said = int(cost.search(COSTS.read_text())[1])
+        print(f"\n  {cost.pattern}: {max(counts)}, said {said}")
         self.assertGreaterEqual(said, max(counts))
         self.assertLessEqual(said, 1.25 * max(counts) + 60)
 

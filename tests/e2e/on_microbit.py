@@ -69,6 +69,24 @@ PANEL = {"sensors": PLAYER["sensors"],
          "actuators": [{"name": "face", "pin": 0, "device": "ws2812", "size": "8x8", "zigzag": True, "color": "red", "brightness": 20}]}
 PANEL_START, PANEL_ENABLE, PANEL_PIN, PANEL_SPEED, PANEL_FROM, PANEL_COUNT = (SPIM2 + at for at in (0x10, 0x500, 0x50C, 0x524, 0x544, 0x548))
 AT_4MHZ, DARK = 0x4000_0000, ["....."] * 5
+STRIP = {"sensors": PLAYER["sensors"],
+         "actuators": [{"name": "eyes", "pin": 0, "device": "ws2812_strip", "lights": LIGHTS, "brightness": 20, "on_release": "hold"}]}
+# Fades, flashes and colours with all parts, and others that interrupt them.
+GLOWS = """
+BEHAVIOR blinks PRIORITY 10
+  EVERY 300ms
+  DO
+    LIGHT eyes TO 33.3% OVER 77ms
+    THEN
+    BLINK eyes purple 3 TIMES OVER 133ms
+  END
+END
+BEHAVIOR interrupts PRIORITY 90
+  EVERY 170ms
+  DO LIGHT eyes TO 77.7% white OVER 20ms FOR 13ms
+  END
+END
+"""
 # The two pictures that differ most.
 CHANGES = "EVERY 100ms DO SHOW face heart FOR 30ms\nTHEN\nSHOW face happy END\n"
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
@@ -110,6 +128,7 @@ COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
 COST_OF_SAYING = re.compile(r"^COST\(say,\s*(\d+),", re.M)
 COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
+COST_OF_STRIP = re.compile(r"^COST\(strip,\s*(\d+),", re.M)
 COST_OF_ROW = re.compile(r"^COST\(row,\s*(\d+),", re.M)
 # Pictures, blinks, and others that take the lights away.
 BLINKS = """
@@ -344,6 +363,33 @@ class OnMicrobit(DebuggedTest):
     def test_what_a_picture_of_a_panel_costs(self):
         self.begin("SHOW face heart", CHANGES, PANEL)
         self.compare_costs({TELL: int(COST_OF_PANEL.search(COSTS.read_text())[1])})
+
+    def await_on_strip(self, wires, color):
+        give_up, shown = time.monotonic() + PATIENCE, None
+        while shown != [color] * LIGHTS:
+            self.assertLess(time.monotonic(), give_up, shown)
+            if self.told(PANEL_START):
+                shown = panel.colors("microbit-v2", wires.read(self.told(PANEL_FROM)[-1], self.told(PANEL_COUNT)[-1]), LIGHTS)
+
+    def test_a_strip_is_told_its_colour_and_goes_dark_when_the_robot_is_stopped(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.begin("LIGHT eyes red", "", STRIP)
+        self.await_on_strip(wires, 0)
+        self.say("feed", "near.X=20")
+        self.await_on_strip(wires, RED)
+        self.say("stop")
+        self.await_on_strip(wires, 0)
+        status = rsc.info(self.board.port)["status"]
+        self.assertEqual((status["faults"], status["safety_late_us"]), (0, 0))
+
+    def test_what_a_colour_of_a_strip_costs(self):
+        self.begin("LIGHT eyes", GLOWS, STRIP)
+        self.compare_costs({TELL: int(COST_OF_STRIP.search(COSTS.read_text())[1])})
+
+    def test_what_the_orders_of_a_strip_cost(self):
+        self.begin("LIGHT eyes", GLOWS, STRIP)
+        self.compare_costs(self.calls_of("ws2812_strip"))
 
     def test_what_the_orders_of_a_panel_cost(self):
         self.begin("SHOW face happy", BLINKS, PANEL)

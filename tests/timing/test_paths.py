@@ -322,7 +322,7 @@ class ActuatorDrivers(unittest.TestCase):
     SERVO = {"type": "PWM", "pin": "3", "device": "servo", "range": ["0deg", "180deg"]}
     PWM = {"type": "PWM", "pin": "3", "device": "pwm", "on_release": "hold"}
     MOTOR = {"type": "PWM", "pins": [3, 4], "device": "motor", "on_release": "hold", "limits": {"SPEED": "98%"}}
-    ELSEWHERE = {"lights", "tones", "ws2812_face"}  # the reference board has none: tests/e2e/on_microbit.py
+    ELSEWHERE = {"lights", "tones", "ws2812_face", "ws2812_strip"}  # the reference board has none: tests/e2e/on_microbit.py
     CHIP = {"type": "I2C", "address": "0x4a", "channel": 3, "enable": 36, "device": "pca9685_servo"}
     DISPLAY = {"type": "I2C", "address": "0x3c", "device": "ssd1306"}
     # Orders that take long ways through the arithmetic: long times, divisors that need more than 16 bits.

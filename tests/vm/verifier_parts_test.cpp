@@ -42,6 +42,16 @@ TEST_CASE(
     check_refused(with_panel(change), {refusal, Section::actuators, 1});
   };
   check_accepted(with_panel([](auto&...) {}));
+  const auto strip = [](unsigned lights) {
+    return [lights](auto& panel, auto&) {
+      panel.driver = DriverId::ws2812_strip;
+      panel.bus = static_cast<std::uint8_t>(lights);
+    };
+  };
+  for (const unsigned lights : {1U, kMostPanelLights})
+    check_accepted(with_panel(strip(lights)));
+  for (const unsigned lights : {0U, kMostPanelLights + 1})
+    refused(Refusal::bad_value, strip(lights));
   check_accepted(with_panel([](auto& panel, auto&) { panel.bus = 3; }));
   check_accepted(with_panel([](auto& panel, auto&) { panel.safe = Release::hold; }));
   refused(Refusal::bad_value, [](auto& panel, auto&) { panel.bus = 4; });

@@ -35,11 +35,7 @@ public:
 
   // Changes the buffer even while it is being sent. No mixed picture stays visible, because the whole picture is sent again.
   void show(std::uint32_t picture) override {
-    for (std::uint32_t left = (picture ^ shown_) & kAllLights; left != 0; left &= left - 1) {
-      const auto light = static_cast<unsigned>(std::countr_zero(left));
-      put(panel_.place_of(light), (picture >> light & 1) != 0 ? lit_ : kDark);
-    }
-    shown_ = picture;
+    panel_.strip != 0 ? light_all(signal_of(picture)) : draw(picture);
     std::atomic_signal_fence(std::memory_order_release);  // the SPI reads from memory
     const std::size_t count = 2 * kSilence + panel_.lights() * kLightBytes;
     Hardware::send(panel_.pin, std::span<const std::byte>(bytes_).first(count));
@@ -75,12 +71,24 @@ private:
     std::memcpy(&bytes_[kSilence + place * kLightBytes], light.data(), kLightBytes);
   }
 
+  void light_all(const Light& light) {
+    for (unsigned place = 0; place < panel_.strip; ++place)
+      put(place, light);
+  }
+
+  void draw(std::uint32_t picture) {
+    for (std::uint32_t left = (picture ^ shown_) & kAllLights; left != 0; left &= left - 1) {
+      const auto light = static_cast<unsigned>(std::countr_zero(left));
+      put(panel_.place_of(light), (picture >> light & 1) != 0 ? lit_ : kDark);
+    }
+    shown_ = picture;
+  }
+
   policy::Panel panel_{};
   Light lit_{};
   std::uint32_t shown_ = 0;
   // Static, so that it takes no flash: there is one panel for each Hardware.
-  inline static std::array<std::byte, 2 * kSilence + policy::kMostPanelLights * kLightBytes>
-      bytes_{};
+  inline static std::array<std::byte, 2 * kSilence + vm::kMostPanelLights * kLightBytes> bytes_{};
 };
 
 }  // namespace robosync::boards

@@ -53,7 +53,7 @@ struct L475 : tests::Stm32Spi {
 template <class Chip>
 struct Wired : Chip {
   explicit Wired(const policy::Panel& with, Idle between = Idle::as_it_was)
-      : panel(with), chain(std::size_t{with.side} * with.side) {
+      : panel(with), chain(with.lights()) {
     Chip::idle = between;
     Chip::heard = [this](bool high, unsigned ns) { chain.hear(high, ns); };
     Chip::output().begin(panel);
@@ -114,6 +114,21 @@ TEMPLATE_TEST_CASE(
     }
     CHECK(board.after(0) == drawn(0, panel));
     CHECK(board.chain.pictures() == 25 + 20 + 1);
+    CHECK(board.chain.disturbed() == 0);
+  }
+}
+
+TEMPLATE_TEST_CASE("panel: all lights of a strip have its colour", "", Microbit, L475) {
+  std::mt19937 random(64);
+  const std::uint16_t pin = panel_pins(TestType::kName).front();
+  for (const unsigned lights : {1U, 8U, 33U, 64U}) {
+    Wired<TestType> board({.pin = pin, .strip = static_cast<std::uint8_t>(lights)});
+    for (unsigned round = 0; round < 10; ++round) {
+      const auto color = static_cast<std::uint32_t>(random()) % (1U << 24);
+      CHECK(board.after(color) == std::vector<std::uint32_t>(lights, color));
+    }
+    CHECK(board.after(0) == std::vector<std::uint32_t>(lights, 0));
+    CHECK(board.chain.pictures() == 10 + 1);
     CHECK(board.chain.disturbed() == 0);
   }
 }

@@ -483,7 +483,13 @@ TEST_CASE("virtual_output: every command takes what the real one takes") {
                               : like == VirtualOutput::picture ? vm::DriverId::lights
                                                                : vm::DriverId::tones;
     CAPTURE(static_cast<int>(like), what.given, what.params);
-    CHECK(length(vm::DriverId::virtual_output, like, what) == length(real, like, what));
+    const kernel::Time taken = length(vm::DriverId::virtual_output, like, what);
+    CHECK(taken == length(real, like, what));
+    if (like == VirtualOutput::picture)
+      CHECK(taken == length(vm::DriverId::ws2812_strip, like, what));
+    if (like == VirtualOutput::level && what.action == Action::set)
+      CHECK(length(vm::DriverId::virtual_output, VirtualOutput::picture, what) ==
+            length(vm::DriverId::ws2812_strip, like, what));
     if (real == vm::DriverId::pwm)
       CHECK(length(vm::DriverId::motor, like, what) == length(real, like, what));
   }
