@@ -533,7 +533,9 @@ void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) 
     return report_no_pin(value, pin, " is not for a panel or strip of lights",
                          "pins that are: ", board_.panels);
   if (board_.named == Board::Named::wrongly) return;
-  diagnostics_.report(Code::E0205, "the board " + board_.name + " has no pin for a panel or strip of lights")
+  diagnostics_
+      .report(Code::E0205,
+              "the board " + board_.name + " has no pin for a panel or strip of lights")
       .label(value.span)
       .helps("boards that have one: " + boards_with_panels());
 }
