@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/units/units.hpp"
+#include "rsc/timeline/pictures.hpp"
 #include "rsc/timeline/thresholds.hpp"
 
 namespace robosync::tool {
@@ -97,6 +98,7 @@ TimelineRecorder::TimelineRecorder(const Program& program, const TraceNames& nam
     page_["actuators"].push_back({{"name", image_.string(actuator.name)},
                                   {"bars", Json::array()},
                                   {"halts", Json::array()}});
+  page_["pictures"] = pictures();
   add_rules();
   add_signals();
 }
@@ -263,6 +265,9 @@ void TimelineRecorder::begin_bar(const link::Event& event) {
                                                        {"text", text},
                                                        {"rule", rule ? Json(*rule) : Json(nullptr)},
                                                        {"step", event.step}});
+  if (shows_pictures(image_.actuators[event.subject]))
+    if (const auto picture = picture_of(EventReader(event, names_)))
+      page_["actuators"][event.subject]["bars"].back()["picture"] = *picture;
   moves_[event.subject] = true;
   lasts_[event.subject] = has_lasting_effect(event, names_);
 }

@@ -4,7 +4,9 @@
 //   begin_us, end_us, behaviors: [name]
 //   signals:   [{group: "sensor"|"variable", name, unit: {name, factor, offset, divisor}, labels: [word],
 //                points: [[time, value or null]], thresholds: [{value, text, rule}]}]
-//   actuators: [{name, bars: [{from, to, behavior: index or -1, text, rule, step}], halts: [[from, to]]}]
+//   actuators: [{name, bars: [{from, to, behavior: index or -1, text, rule, step, picture: index; only of one that shows pictures}],
+//                halts: [[from, to]]}]
+//   pictures:  [[row from the top, # for each light that is on]]
 //   safety:    [{from, to, rule, step}]
 //   denied:    [{at, behavior, text, rule, step}]
 //   messages:  [{at, kind: the event's name in link/events.def, text, step}]

@@ -69,6 +69,25 @@ function label(lane, x, y, room, text, quiet = false) {
   lane.svg.append(element("text", quiet ? {x, y, class: "quiet"} : {x, y}, short));
 }
 
+// A picture on lights, each of `size` pixels: the picture's width, in pixels; 0 if there is none.
+const LIGHTS = 5;
+
+function drawPicture(into, index, x, y, size) {
+  if (index === undefined) return 0;
+  const lit = run.pictures[index].flatMap((row, r) => [...row].map((light, column) =>
+    light === "#" ? `M${x + 1 + column * size},${y + 1 + r * size}h${size - 1}v${size - 1}h${1 - size}z` : ""));
+  const width = LIGHTS * size + 1;
+  into.append(element("rect", {x, y, width, height: width, class: "dark"}), element("path", {d: lit.join(""), class: "lit"}));
+  return width;
+}
+
+// The picture of a bar, if it has one, and its text, in a row whose middle is at `y`.
+function caption(lane, bar, x, y, room, text) {
+  const width = room < 24 ? 0 : drawPicture(lane.svg, bar.picture, x, y - 10, 4);
+  const left = width ? width + 4 : 0;
+  label(lane, x + left, y + 4, room - left, text);
+}
+
 // Things with a beginning and an end, sorted, of which none overlaps another; those of one pixel are drawn once.
 function drawSpans(lane, spans, draw) {
   let last = -Infinity;
@@ -102,13 +121,13 @@ function drawBars(lane) {
   drawSpans(lane, lasting, (rest, x, width) => {
     const shape = element("rect", {x, y: lane.height - 10, width, height: 6, class: "lasting", ...paint(rest.behavior)});
     lane.svg.append(selectable(shape, rest.bar));
-    label(lane, x + 4, lane.height - 12, width - 6, rest.text);
+    caption(lane, rest, x + 4, 12, width - 6, rest.text);
   });
   drawSpans(lane, lane.of.bars, (bar, x, width) => {
     const shape = element("rect", {x, y: 4, width, height: lane.height - 8, rx: 2, class: "bar", ...paint(bar.behavior)});
     lane.svg.append(selectable(shape, bar));
     const owner = run.behaviors[bar.behavior];
-    label(lane, x + 4, lane.height / 2 + 4, width - 6, owner ? `${bar.text}  (${owner})` : bar.text);
+    caption(lane, bar, x + 4, lane.height / 2, width - 6, owner ? `${bar.text}  (${owner})` : bar.text);
   });
 }
 
@@ -324,7 +343,15 @@ function tell(event) {
   const item = event.target.item;
   const curve = lane && lane.of.points;
   tip.hidden = !item && !curve;
-  if (item) tip.textContent = why(item);
+  if (item) {
+    tip.textContent = why(item);
+    const large = element("svg");
+    const width = drawPicture(large, item.picture, 0, 0, 12);
+    if (width) {
+      for (const side of ["width", "height"]) large.setAttribute(side, width);
+      tip.prepend(large);
+    }
+  }
   else if (curve) {
     const at = timeAt(lane, event.clientX - lane.svg.getBoundingClientRect().left);
     const index = firstFrom(curve, point => point[0], at + 1) - 1;

@@ -186,11 +186,13 @@ std::string EventReader::verb_name() const {
 }
 // The text of a SAY may be empty.
 std::optional<std::string> EventReader::written_word() const {
-  const vm::Value word = value(0);
-  if (word < 0) return std::nullopt;
-  const auto* const record = at(&vm::Image::words, static_cast<std::size_t>(word));
-  if (record == nullptr) return fmt::format("word {}", word);
+  if (value(0) < 0) return std::nullopt;
+  const vm::WordEntry* const record = word();
+  if (record == nullptr) return fmt::format("word {}", value(0));
   return std::string(names_.image->string(record->name));
+}
+const vm::WordEntry* EventReader::word() const {
+  return value(0) < 0 ? nullptr : at(&vm::Image::words, static_cast<std::size_t>(value(0)));
 }
 bool EventReader::is_said(std::size_t param) const {
   return std::ranges::find(vm::kTextParams, static_cast<vm::Param>(param)) !=

@@ -82,6 +82,7 @@ public:
   // text.
   std::optional<std::string> word_name() const;
   std::optional<std::string> written_word() const;
+  const vm::WordEntry* word() const;  // nullptr when there is none, or the image does not have it
   // Is the parameter of a command a value for a {} place?
   bool is_said(std::size_t param) const;
   std::string thread_name() const;

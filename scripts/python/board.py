@@ -255,6 +255,11 @@ class Board:
     def wait(self):
         return self._process.wait()
 
+    def processor_seconds(self):
+        """What QEMU has used of this machine's processor: while the firmware never sleeps, the board's time goes on with it."""
+        used = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[11:13]  # user, system
+        return sum(map(int, used)) / os.sysconf("SC_CLK_TCK")
+
     def hold_up(self, seconds):
         """Stops QEMU for this time, as a busy host would."""
         self._process.send_signal(signal.SIGSTOP)

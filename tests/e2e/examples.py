@@ -26,7 +26,7 @@ def config(folder):
     robot = json.loads((folder / "robot.json").read_text())
     robot = without_parts(robot, ("sensors",) if robot.get("board") == NAME else ("sensors", "actuators"))
     for sensor in robot["sensors"]:
-        if "channels" not in sensor:
+        if sensor.get("type") != "VIRTUAL":
             sensor.update(fed(sensor))
         for key in set(sensor) - {"name", "channels"}:
             del sensor[key]

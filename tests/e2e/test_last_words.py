@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 import rsc
+import unimplemented
 from board import FIRMWARE, HAVE_WATCHDOG, NAME, Board
 from debugger import IN_SAFETY, PC, DebuggedTest, endless_loop
 from support import LineReader
@@ -17,9 +18,16 @@ from counting import symbols  # noqa: E402
 
 PATIENCE = 20
 NOWHERE = 0xA000_0000  # nothing may run there
+# Where the firmware kicks the watchdogs that QEMU does not have, and with what; and the processor time of QEMU in which it runs
+# so many instructions that more than the watchdog's 100 ms of the board's time pass.
+KICKS = {"b-l475e-iot01a": (("IWDG", 0x00), 0xAAAA), "nucleo-l476rg": (("IWDG", 0x00), 0xAAAA), "microbit-v2": (("io", 0x1_0600), 0x6E52_4635)}
+LONG_ENOUGH_S = 0.2
 
 
 class LastWords(DebuggedTest):
+    def qemu_arguments(self):
+        return [*(unimplemented.arguments(self.folder) if NAME in KICKS else []), *super().qemu_arguments()]
+
     def send_safety_to(self, address):
         """Makes the safety thread's next check of the rules jump to the address."""
         with self.debugger() as debugger:
@@ -71,6 +79,26 @@ class LastWords(DebuggedTest):
         self.send_safety_to(endless_loop())
         self.assertIsNone(self.await_reset("watchdog")["last_fault"])
         self.assertIn("(reset: watchdog)", self.first_line())
+
+    def kicks(self):
+        place, value = KICKS[NAME]
+        return unimplemented.told(self.folder, place).count(value)
+
+    def run_for(self, seconds):
+        end, give_up = self.board.processor_seconds() + seconds, time.monotonic() + PATIENCE
+        while self.board.processor_seconds() < end:
+            self.assertLess(time.monotonic(), give_up, "the board stands still")
+            time.sleep(0.02)
+
+    @unittest.skipUnless(NAME in KICKS, "QEMU has the watchdog of this board, and it resets the board")
+    def test_a_safety_thread_that_hangs_kicks_the_watchdog_no_more(self):
+        before = self.kicks()
+        self.run_for(LONG_ENOUGH_S)
+        self.assertGreater(self.kicks(), before)
+        self.send_safety_to(endless_loop())
+        before = self.kicks()
+        self.run_for(LONG_ENOUGH_S)
+        self.assertEqual(self.kicks(), before)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ PATIENCE = 20
 ARM, MOTOR, FORWARD, BACK = AT_WILL[:4]
 SEVENTY_PERCENT = 14_000  # us
 PWM_DRIVER, LIGHTS_DRIVER, WORD_DRIVER = 5, 9, 22  # in vm/drivers.def
+HOLD, COAST = 0, 2  # vm::Release
 CONFIG = {
     "board": NAME,
     "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
@@ -121,6 +122,13 @@ class Stop(RobotTest):
     def test_an_image_for_a_pin_that_is_no_output_is_refused(self):
         self.refuses("<BBH", (PWM_DRIVER, 0, 65535), "does not let programs drive this pin")
 
+    def test_an_image_whose_motor_would_run_on_in_a_halt_is_refused(self):
+        """What rsc refuses, too: `"safe": "hold"` for a motor (E0205). So the image is sent without rsc."""
+        image = self.changed(PROGRAM, "<BBHBB", (PWM_DRIVER, 0, MOTOR, HOLD, COAST), (PWM_DRIVER, 0, MOTOR, HOLD, HOLD))
+        with wire.Line(self.board.port) as line:
+            line.hello()
+            self.assertEqual(line.try_image(image.read_bytes()), ("drives_on", False))
+
     @unittest.skipIf(PROFILE.get("lights"), "this board has lights")
     def test_an_image_for_lights_is_refused_where_there_are_none(self):
         self.refuses("<BBH", (LIGHTS_DRIVER, 0, 0), "does not have the driver `lights`")
@@ -137,12 +145,17 @@ class Stop(RobotTest):
         self.refuses_changed(THERMOMETER, "<BBH", (WORD_DRIVER, place["bus"], allowed),
                              (WORD_DRIVER, place["bus"], int(place["address"], 0)), "a part of the board that programs may not reach")
 
-    def refuses_changed(self, program, form, wired, wiring, why):
+    def changed(self, program, form, wired, wiring):
+        """The program's image, with other wiring; the board accepts it as it was."""
         image = self.compiled(program)
         self.say("upload", image)
         damaged = bytearray(image.read_bytes())
         struct.pack_into(form, damaged, damaged.index(struct.pack(form, *wired)), *wiring)
         image.write_bytes(wire.sealed(bytes(damaged)))
+        return image
+
+    def refuses_changed(self, program, form, wired, wiring, why):
+        image = self.changed(program, form, wired, wiring)
         done = rsc.call("upload", image, "--port", self.board.port)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn(why, done.stderr)

@@ -16,6 +16,7 @@ from types import SimpleNamespace
 from board import socket_of
 
 LINK = Path(__file__).resolve().parents[2] / "link"
+REFUSALS = ["none", *re.findall(r"^REFUSAL\((\w+),", (LINK.parent / "vm/refusals.def").read_text("utf-8"), re.M)]
 TYPES = {"std::uint8_t": "B", "std::int8_t": "b", "std::uint16_t": "H", "std::int16_t": "h", "std::uint32_t": "I",
          "std::int32_t": "i", "std::uint64_t": "Q", "Name": "16s",
          "ProgramHash": "8s", "SessionId": "I"}
@@ -227,3 +228,11 @@ class Line:
     def activate(self):
         """Activates the image that was transferred last."""
         return unpack("ActivateResult", self.ask("activate", activation(self.session, self._name), reply="activate_result"))
+
+    def try_image(self, image):
+        """Transfers and activates the image, unchecked: (why the board refuses it or "none", whether it now runs)."""
+        state = ENUMS["TransferState"][self.transfer(image).state]
+        if state != "complete":
+            raise ValueError(f"the transfer is {state}")
+        result = self.activate()
+        return REFUSALS[result.refusal], bool(result.running)

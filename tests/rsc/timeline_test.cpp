@@ -49,6 +49,18 @@ constexpr const char* kShownVisit = R"({"duration": "10s", "stimuli": [
   {"at": "1s", "sensor": "touch", "value": 3}, {"at": "1.5s", "sensor": "near", "value": "40cm"},
   {"at": "4s", "sensor": "touch", "value": 9}, {"at": "6s", "sensor": "touch", "value": 0}]})";
 
+// What the page shows.
+json run_in(const std::string& page) {
+  const std::string begin = R"(<script type="application/json" id="run">)";
+  const std::size_t at = page.find(begin) + begin.size();
+  return json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
+json run_of_page(const Folder& folder, const std::string& program) {
+  REQUIRE(test::rsc({"run", program, "--html", folder.path("run.html")}).exit == 0);
+  return run_in(folder.read("run.html"));
+}
+
 class Page : public Folder {
 public:
   Page() : program(write("robot.rsl", kShownProgram)) {
@@ -58,9 +70,7 @@ public:
     CAPTURE(outcome.err);
     REQUIRE(outcome.exit == 0);
     text = read("run.html");
-    const std::string begin = R"(<script type="application/json" id="run">)";
-    const std::size_t at = text.find(begin) + begin.size();
-    run_of = json::parse(text.substr(at, text.find("</script>", at) - at));
+    run_of = run_in(text);
   }
   [[nodiscard]] Outcome run(const std::string& html) const {
     return test::rsc({"run", program, "--scenario", scenario, "--html", html});
@@ -101,11 +111,7 @@ TEST_CASE("a power and a picture last until the next command; with FOR, and at 0
                                            "AT START DO\n  RUN wheel TO 50%\n  SHOW face happy\n"
                                            "  WAIT 6s\n  RUN wheel TO 0%\n  WAIT 1s\n"
                                            "  RUN wheel TO 20% FOR 1s\nEND\n");
-  REQUIRE(test::rsc({"run", program, "--html", folder.path("run.html")}).exit == 0);
-  const std::string text = folder.read("run.html");
-  const std::string begin = R"(<script type="application/json" id="run">)";
-  const std::size_t at = text.find(begin) + begin.size();
-  const json run = json::parse(text.substr(at, text.find("</script>", at) - at));
+  const json run = run_of_page(folder, program);
   const json& bars = run.at("actuators").at(0).at("bars");
   REQUIRE(bars.size() == 3);
   CHECK(bars.at(0).at("to") == 0);
@@ -113,6 +119,28 @@ TEST_CASE("a power and a picture last until the next command; with FOR, and at 0
   CHECK_FALSE(bars.at(1).contains("until"));
   CHECK_FALSE(bars.at(2).contains("until"));
   CHECK(run.at("actuators").at(1).at("bars").at(0).at("until") == run.at("end_us"));
+}
+
+TEST_CASE("a command for lights has the picture that they show; a face without hardware has none") {
+  const Folder folder;
+  folder.write("robot.json", R"({"board": "microbit-v2", "actuators": [
+    {"name": "face", "device": "lights"}, {"name": "voice", "device": "beeper"},
+    {"name": "display", "type": "VIRTUAL", "device": "face"}]})");
+  const std::string program = folder.write("robot.rsl",
+                                           "AT START DO\n  SHOW face smile\n  PLAY voice hello\n"
+                                           "  SHOW display happy\n  WAIT 1s\n  BLINK face\n"
+                                           "  WAIT 1s\n  SHOW face cross FOR 1s\nEND\n");
+  const json run = run_of_page(folder, program);
+  const json& face = run.at("actuators").at(0).at("bars");
+  REQUIRE(face.size() == 3);
+  CHECK(run.at("pictures").at(face.at(0).at("picture").get<std::size_t>()) ==
+        json::parse(R"([".....", ".#.#.", ".....", "#...#", ".###."])"));
+  CHECK(face.at(0).at("text") == "SHOW smile");
+  CHECK_FALSE(face.at(1).contains("picture"));
+  CHECK(run.at("pictures").at(face.at(2).at("picture").get<std::size_t>()) ==
+        json::parse(R"(["#...#", ".#.#.", "..#..", ".#.#.", "#...#"])"));
+  CHECK_FALSE(run.at("actuators").at(1).at("bars").at(0).contains("picture"));
+  CHECK_FALSE(run.at("actuators").at(2).at("bars").at(0).contains("picture"));
 }
 
 TEST_CASE("who was denied is told by whom, and what SAFETY did from when to when") {

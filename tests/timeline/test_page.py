@@ -51,6 +51,16 @@ document.title = JSON.stringify(seen);
 </script>"""
 
 
+# Appended to a page: points at the first command that shows a picture, and writes the picture beside its words into the title.
+POINTS = """<script>
+const bar = [...document.querySelectorAll(".bar")].find(shape => shape.item.picture !== undefined);
+bar.dispatchEvent(new PointerEvent("pointermove", {bubbles: true}));
+document.title = JSON.stringify(document.querySelector("#tip .lit").getAttribute("d"));
+</script>"""
+PICTURES = dict(re.findall(r'^PICTURE\((\w+),\s*"(.*)"\)$', (rsc.ROOT / "runtime-m4/drivers/pictures.def").read_text(), re.M))
+LIGHTS = 5
+
+
 # Pages beside each other, for a browser takes longer to start than to show one: their documents, when all scripts have run,
 # stand in its title.
 FRAMES = """{}<script>
@@ -81,6 +91,26 @@ def wide_doms(pages, folder):
 
 def count(document, kind):
     return len(re.findall(rf'class="{kind}[ "]', document))
+
+
+def rows_of(path):
+    """The picture whose lights a path draws, each in a square of its own."""
+    lit = [tuple(map(float, at)) for at in re.findall(r"M([\d.]+),([\d.]+)", path)]
+    left, top = (min(at[axis] for at in lit) for axis in (0, 1))
+    size = float(re.search(r"h([\d.]+)", path)[1]) + 1
+    found = {(round((y - top) / size), round((x - left) / size)) for x, y in lit}
+    return trimmed(["".join("#" if (row, column) in found else "." for column in range(LIGHTS)) for row in range(LIGHTS)])
+
+
+def trimmed(rows):
+    """Moved to the top left: a path does not tell where the dark lights at its edges are."""
+    lit = [(row, column) for row, lights in enumerate(rows) for column, light in enumerate(lights) if light == "#"]
+    top, left = (min(at[axis] for at in lit) for axis in (0, 1))
+    return {(row - top, column - left) for row, column in lit}
+
+
+def rows_named(name):
+    return trimmed(PICTURES[name].split('", "'))
 
 
 class Page(unittest.TestCase):
@@ -154,6 +184,15 @@ class Page(unittest.TestCase):
         self.assertIn("touch LEVEL = 5", seen["tip"])
         self.assertIn("rule at line 1 triggers its ELSE side", seen["tip"])
         self.assertIn("1  WHEN touch LEVEL < 3", seen["source"])
+
+    def test_lights_are_drawn_with_the_picture_that_they_show(self):
+        page, trace = self.show(EXAMPLES / "microbit_companion")
+        shown = [event["word"] for event in trace if event["event"] == "command" and event.get("verb") == "SHOW"]
+        self.assertEqual(shown, ["happy", "worried", "happy", "heart", "scared", "sleepy"])
+        drawn = re.findall(r'<path d="([^"]*)" class="lit"', *wide_doms([page], self.folder))
+        self.assertEqual([rows_of(path) for path in drawn], [rows_named(name) for name in shown])
+        self.append(page, POINTS)
+        self.assertEqual(rows_of(title_of(page)), rows_named("happy"))
 
     def test_zooming_in_and_back(self):
         seen = self.hands(self.show(EXAMPLES / "touch_companion")[0])
