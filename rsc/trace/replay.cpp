@@ -215,7 +215,9 @@ public:
 private:
   // Events that the board stamps with the time of a step; other events have their own times.
   static bool is_of_step(std::string_view kind) {
-    constexpr std::string_view kOfStep[] = {"input", "stale", "set", "fire", "win", "lose"};
+    constexpr std::string_view kOfStep[] = {"input",     "stale",   "set",        "fire",
+                                            "win",       "lose",    "go_on",      "wait",
+                                            "interrupt", "overrun", "zero_divide"};
     return std::ranges::find(kOfStep, kind) != std::end(kOfStep);
   }
 
