@@ -14,6 +14,7 @@ from pathlib import Path
 
 import answer
 import boards
+import bus
 import compile_figures
 import figures
 import growth
@@ -35,7 +36,7 @@ GROUPS = (workloads.workload_figures, workloads.smoothing_figures, figures.opcod
           figures.kernel_figures, figures.size_figures, memory.memory_figures, growth.growth_figures,
           figures.link_figures, answer.answer_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures,
           path.path_figures, safety.safety_figures, idle.idle_figures, compile_figures.compile_figures,
-          figures.tool_figures, boards.board_figures)
+          figures.tool_figures, bus.i2c_figures, boards.board_figures)
 BY_NAME = {group.__name__.removesuffix("_figures"): group for group in GROUPS}
 
 

@@ -71,6 +71,11 @@ Firmware:
   8,000 to 15,000, depending on how often the host sends requests meanwhile.
 * `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those
   alone.
+* `i2c/…` is a sample of a motion sensor where the chip's I2C master works by itself: the driver's call that asks for it, the bus
+  interrupts, and the driver's call that takes the bytes. QEMU has neither the master nor the sensor. So a test plays both through the
+  debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The two times that the sensor's thread
+  wakes for a sample are not included: each takes at most `wake_by_timer` of the board's `costs.def`, 450. On the reference board,
+  whose bus is bit-banged, a sample does keep the processor busy (`firmware/idle_second_paper_i2c`), and lower threads wait.
 * `ear/block` is the work for 20 ms of sound at the most expensive pitch, on the micro:bit V2.
 
 Safety and link:

@@ -52,7 +52,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/robot_vocabulary.cpp
   config/sensors.cpp
   config/values.cpp
-  config/wiring.cpp
+  config/wiring.cpp config/wiring_limits.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp
   optimize/optimize.cpp

@@ -159,6 +159,16 @@ void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& 
       .helps("`safe` can be `coast` (off) here; only a servo may `hold`");
 }
 
+// Only a bus brings a voltage of the part to the board: its pull-ups may have another supply.
+void check_voltage(const Fields& fields, const WiringType& type, const Device& device,
+                   WiringReader& wiring, Diagnostics& diagnostics) {
+  if (type.name == "I2C") return wiring.check_volts(fields, device.volts);
+  const auto* const volts = fields.find("volts");
+  if (volts == nullptr || type.name == "VIRTUAL") return;
+  diagnostics.report(Code::E0205, "an output has no `volts`: the board drives it")
+      .label(volts->span);
+}
+
 }  // namespace
 
 std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringReader& wiring,
@@ -189,12 +199,15 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     actuator.bus = place.bus;
     actuator.pin = place.place;
     if (type->name == "VIRTUAL") make_virtual(actuator);
+    if (type->name != "VIRTUAL" && actuator.driver == vm::DriverId::virtual_actuator)
+      wiring.check_without_driver(fields, *type, place);
     if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
     if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
     if (vm::drives_panel(actuator.driver)) wiring.check_panel(fields, place);
     if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
       wiring.check_part(fields, part);
   }
+  if (type != nullptr) check_voltage(fields, *type, device, wiring, diagnostics);
   actuator.panel = read_lights(fields, device.actuator.driver, diagnostics);
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);

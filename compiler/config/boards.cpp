@@ -134,6 +134,14 @@ bool Board::has_panel(std::uint16_t pin) const {
   return is_in(panels, pin);
 }
 
+std::vector<Board::Pins> Board::all_pins() const {
+  std::vector<Pins> all = outputs;
+  for (const auto* more : {&inputs, &analog, &enables})
+    for (const Pins& pins : *more)
+      if (!is_in(all, pins.first) || !is_in(all, pins.last)) all.push_back(pins);
+  return all;
+}
+
 const Board::Reserved* Board::find_reserved(std::uint8_t bus, std::uint16_t address) const {
   const auto found = std::ranges::find_if(
       reserved, [&](const Reserved& one) { return one.bus == bus && one.address == address; });
@@ -157,6 +165,9 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   board.step_budget = read_number(fields, "step_budget", "a board", diagnostics);
   board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
   board.serial_lines = read_number(fields, "serial_lines", "a board", diagnostics);
+  if (const auto* volts = fields.find("volts"))
+    board.volts =
+        read_quantity(*volts, canonical_unit(vm::Dimension::voltage), diagnostics).value_or(0);
   if (const auto* outputs = fields.require("outputs", "a board"))
     board.outputs = read_pins(*outputs, Object::outputs, diagnostics);
   if (const auto* inputs = fields.require("inputs", "a board"))

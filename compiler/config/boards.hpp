@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compiler/diagnostics/diagnostic.hpp"
+#include "vm/value.hpp"
 
 namespace robosync::compiler {
 
@@ -42,6 +43,7 @@ struct Board {
     std::string used_for;
   };
   std::vector<Reserved> reserved;
+  vm::Value volts = 0;             // the highest voltage that its pins withstand; 0: they have none
   std::uint32_t serial_lines = 0;  // for sound players, from vm::kFirstPlayerLine on
   // How to flash its firmware. nullopt: this board exists only in an emulator.
   struct Flash {
@@ -71,6 +73,7 @@ struct Board {
   [[nodiscard]] bool has_analog(std::uint16_t pin) const;
   [[nodiscard]] bool has_enable(std::uint16_t pin) const;
   [[nodiscard]] bool has_panel(std::uint16_t pin) const;
+  [[nodiscard]] std::vector<Pins> all_pins() const;
   // Null if programs may use it.
   [[nodiscard]] const Reserved* find_reserved(std::uint8_t bus, std::uint16_t address) const;
   [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case

@@ -138,7 +138,31 @@ void read_actuator_device(const Fields& fields, Device& device, Diagnostics& dia
       read_word(member, actuator, diagnostics);
 }
 
+// [["0x1c", "0x1f"], ["0x2a", "0x2a"]]
+void read_addresses(const json::Value& value, Device& device, Diagnostics& diagnostics) {
+  if (!expect_kind(value, json::Kind::array, diagnostics)) return;
+  for (const json::Value& item : value.items) {
+    if (item.items.size() != 2) {
+      diagnostics.report(Code::E0205, "a row of addresses has a first and a last one")
+          .label(item.span);
+      continue;
+    }
+    const auto read = [&](const json::Value& address) {
+      return static_cast<std::uint16_t>(
+          read_whole(address, vm::kFirstAddress, vm::kLastAddress, diagnostics).value_or(0));
+    };
+    device.addresses.push_back({read(item.items[0]), read(item.items[1])});
+  }
+}
+
 void read_sensor_device(const Fields& fields, Device& device, Diagnostics& diagnostics) {
+  if (const auto* addresses = fields.find("addresses"))
+    read_addresses(*addresses, device, diagnostics);
+  if (const auto* every = fields.find("measures_every"))
+    device.measures_every_ms = read_milliseconds(*every, diagnostics).value_or(0);
+  if (const auto* volts = fields.find("volts"))
+    device.volts =
+        read_quantity(*volts, canonical_unit(vm::Dimension::voltage), diagnostics).value_or(0);
   if (const auto* inputs = fields.find("inputs"))
     device.inputs = static_cast<unsigned>(
         read_whole(*inputs, 1, kRegisters, diagnostics).value_or(device.inputs));
@@ -166,6 +190,16 @@ const Device* find_if(Predicate predicate) {
 }
 
 }  // namespace
+
+bool Device::can_have(std::uint16_t address) const {
+  return addresses.empty() || std::ranges::any_of(addresses, [&](const Addresses& row) {
+           return address >= row.first && address <= row.last;
+         });
+}
+
+std::uint16_t Device::shortest_period_ms() const {
+  return std::max(measures_every_ms, vm::min_period_ms(sensor.driver));
+}
 
 Device read_device(const DeviceText& text, Diagnostics& diagnostics) {
   SourceMap sources;

@@ -19,12 +19,23 @@ struct Device {
   bool has_driver = false;  // false: this version has none; values go over the link
   bool is_default = false;  // the default for its type, if robot.json names no device
   unsigned inputs = 1;
+  struct Addresses {
+    std::uint16_t first, last;
+  };
+  std::vector<Addresses> addresses;  // that its pins can select; empty: any
+  // The time between two measurements of the part itself: a sample before the next one would be the last one again. 0: any.
+  std::uint16_t measures_every_ms = 0;
+  vm::Value volts =
+      0;  // the highest voltage that it puts on the board's pins; 0: that of the board
   bool has_sounds = false;
   SensorConfig sensor;  // the starting values for an entry in robot.json, by kind
   ActuatorConfig actuator;
 
   // True if any of its registers may be read: robot.json says which.
   [[nodiscard]] bool has_registers() const { return inputs == kRegisters; }
+  [[nodiscard]] bool can_have(std::uint16_t address) const;
+  // The shortest period that gives a new reading each time: the part's, or the driver's if that is longer.
+  [[nodiscard]] std::uint16_t shortest_period_ms() const;
 };
 
 struct DeviceText {  // one built-in descriptor, and the keys it is found by

@@ -114,6 +114,21 @@ void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnos
                               : "specify it with \"device\"");
 }
 
+// What to write in place of a type without a driver.
+std::string other_than(std::string_view type, bool is_sensor) {
+  const std::string feeds = is_sensor ? "`\"type\": \"VIRTUAL\"` says that it is fed"
+                                      : "`\"type\": \"VIRTUAL\"` says that it has no hardware";
+  if (type == "SPI")
+    return "no board has an SPI bus for programs; many parts can be wired by I2C, too; " + feeds;
+  if (type == "UART")
+    return "the serial line of a board is for a sound player, `\"device\": \"dfplayer\"`; " + feeds;
+  if (type == "GPIO")
+    return (is_sensor ? "for the level of the pin write `\"device\": \"switch\"`; "
+                      : "to switch the pin on and off write `\"type\": \"PWM\"`; ") +
+           feeds;
+  return feeds;
+}
+
 // A microphone cannot be wired. On a board that has none, it is fed.
 bool is_fed_here(const Device* device, const Board::Part* part) {
   return device != nullptr && part == nullptr && vm::is_microphone(device->sensor.driver);
@@ -187,7 +202,8 @@ const Device* choose_device(const Fields& fields, const WiringType* type, const 
     diagnostics
         .report(Code::W0212, "this version has no driver for " + thing + ": `" + name.text +
                                  "` is virtual, " + what_it_does(is_sensor))
-        .label(name.span);
+        .label(name.span)
+        .helps(other_than(type->name, is_sensor));
   }
   return device == nullptr ? fallback : device;
 }

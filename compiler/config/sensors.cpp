@@ -228,18 +228,21 @@ void place_channels(SensorConfig& sensor) {
   }
 }
 
-void check_place(const Fields& fields, const SensorConfig& sensor, const Board::Part* part,
-                 WiringReader& wiring, const Wiring& place) {
-  if (vm::is_on_i2c(sensor.driver)) {
+void check_place(const Fields& fields, const Device& device, const WiringType& type,
+                 const Board::Part* part, WiringReader& wiring, const Wiring& place) {
+  const vm::DriverId driver = device.sensor.driver;
+  if (vm::is_on_i2c(driver)) {
     wiring.check_bus(fields, place);
-    wiring.check_address(fields, place);
+    if (wiring.check_own_address(fields, place, device)) wiring.check_address(fields, place);
   }
-  if (vm::is_on_pin(sensor.driver)) wiring.check_input(fields, place);
-  if (vm::is_by_echo(sensor.driver)) wiring.check_echo(fields, place);
-  if (vm::is_analog(sensor.driver)) wiring.check_analog(fields, place);
-  if (vm::is_microphone(sensor.driver)) wiring.check_part(fields, part);
-  const bool hears = vm::is_microphone(sensor.driver) && part != nullptr;
-  if (vm::is_analog(sensor.driver) || hears) wiring.check_converter(fields, hears);
+  if (vm::is_on_pin(driver)) wiring.check_input(fields, place);
+  if (vm::is_by_echo(driver)) wiring.check_echo(fields, place);
+  if (vm::is_analog(driver)) wiring.check_analog(fields, place);
+  if (vm::is_microphone(driver)) wiring.check_part(fields, part);
+  const bool hears = vm::is_microphone(driver) && part != nullptr;
+  if (vm::is_analog(driver) || hears) wiring.check_converter(fields, hears);
+  if (driver == vm::DriverId::virtual_sensor) wiring.check_without_driver(fields, type, place);
+  if (part == nullptr) wiring.check_volts(fields, device.volts);
 }
 
 // Its channels are those of a block of sound.
@@ -256,21 +259,28 @@ void check_sound_rate(const json::Value* channels, SensorConfig& sensor, Diagnos
 }
 
 // The descriptor's own rate is always possible.
-void check_rate(const json::Value* channels, SensorConfig& sensor, Diagnostics& diagnostics) {
-  const std::uint16_t shortest = vm::min_period_ms(sensor.driver);
+void check_rate(const Fields& fields, const Device& device, SensorConfig& sensor,
+                Diagnostics& diagnostics) {
+  const auto* const channels = fields.find("channels");
   if (vm::is_microphone(sensor.driver)) return check_sound_rate(channels, sensor, diagnostics);
-  if (channels == nullptr || sensor.period_ms >= shortest) return;
+  // What is fed has another driver and no period.
+  const std::uint16_t shortest = device.shortest_period_ms();
+  if (channels == nullptr || sensor.driver != device.sensor.driver) return;
   const bool by_echo = vm::is_by_echo(sensor.driver);
-  for (const json::Member& channel : channels->members)
-    for (const json::Member& key : channel.value.members)
+  for (std::size_t c = 0; c < channels->members.size() && c < sensor.channels.size(); ++c) {
+    if (sensor.channels[c].period_ms >= shortest) continue;
+    for (const json::Member& key : channels->members[c].value.members)
       if (key.key == "rate")
         diagnostics
             .report(Code::E0205,
-                    fmt::format("this measures every {} ms, but {} {} ms{}", sensor.period_ms,
+                    fmt::format("this measures every {} ms, but {} {} ms{}",
+                                sensor.channels[c].period_ms,
                                 by_echo ? "the echoes of one burst take" : "each measurement takes",
                                 shortest, by_echo ? " to die away" : ""))
             .label(key.value.span)
+            .label(fields.find("device")->span, "of this device", false)
             .helps(fmt::format("use a rate of at most {}Hz", 1000 / shortest));
+  }
 }
 
 // A reading that becomes unknown before the next one comes would be unknown again and again.
@@ -314,7 +324,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
     sensor.bus = place.bus;
     sensor.address = place.place;
     if (type->name != "VIRTUAL" && device.has_driver)
-      check_place(fields, sensor, part, wiring, place);
+      check_place(fields, device, *type, part, wiring, place);
   }
   if (const auto* number = fields.find("register"))
     read_register(*number, device, sensor, diagnostics);
@@ -325,7 +335,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   for (const ChannelConfig& channel : sensor.channels)
     if (channel.period_ms != 0 && (sensor.period_ms == 0 || channel.period_ms < sensor.period_ms))
       sensor.period_ms = channel.period_ms;
-  check_rate(channels, sensor, diagnostics);
+  check_rate(fields, device, sensor, diagnostics);
   check_stale_after(channels, sensor, diagnostics);
   return sensor;
 }

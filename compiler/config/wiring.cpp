@@ -169,7 +169,7 @@ std::uint8_t WiringReader::read_active(const Fields& fields) {
 
 // Parts of a board with a contact close to ground, against a pull-up.
 Wiring WiringReader::read_part(const Fields& fields, const Board::Part& part) {
-  for (const char* key : {"bus", "address", "pin", "active"})
+  for (const char* key : {"bus", "address", "pin", "active", "volts"})
     if (const auto* value = fields.find(key))
       diagnostics_
           .report(Code::E0205, "the `" + part.name + "` of the board " + board_.name +
@@ -455,20 +455,6 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
   return wiring;
 }
 
-void WiringReader::check_address(const Fields& fields, const Wiring& wiring) {
-  const Board::Reserved* const reserved = board_.find_reserved(wiring.bus, wiring.place);
-  const auto* const address = fields.find("address");
-  if (reserved == nullptr || address == nullptr) return;
-  const auto* const name = fields.find("name");
-  diagnostics_
-      .report(Code::E0207,
-              fmt::format("{} cannot have address 0x{:02x} on bus {}: {} of the board {} has it",
-                          name != nullptr && !name->text.empty() ? "`" + name->text + "`" : "this",
-                          wiring.place, wiring.bus, reserved->used_for, board_.name))
-      .label(address->span)
-      .helps("give it another address; many parts have pins or solder bridges for that");
-}
-
 void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
   if (wiring.bus < board_.i2c_buses || board_.named == Board::Named::wrongly) return;
   const auto* bus = fields.find("bus");
@@ -484,12 +470,13 @@ void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
 // Each serial line connects one player.
 void WiringReader::check_line(const Fields& fields, const Wiring& wiring) {
   const auto* bus = fields.find("bus");
-  const Span span = (bus != nullptr ? bus : fields.find("device"))->span;
+  if (bus == nullptr) bus = fields.find(fields.find("device") != nullptr ? "device" : "type");
+  const Span span = bus->span;
   const std::string line = "serial line " + std::to_string(wiring.bus);
   if (wiring.bus < vm::kFirstPlayerLine ||
       wiring.bus >= vm::kFirstPlayerLine + board_.serial_lines) {
     diagnostics_
-        .report(Code::E0205, "the board " + board_.name + " has no " + line + " for a player")
+        .report(Code::E0205, "the board " + board_.name + " has no " + line + " for programs")
         .label(span)
         .helps(board_.serial_lines == 1
                    ? "it has only `\"bus\": 1`"

@@ -57,6 +57,12 @@ public:
   void check_bus(const Fields& fields, const Wiring& wiring);
   // Of a device on I2C: no part of the board has its address for itself.
   void check_address(const Fields& fields, const Wiring& wiring);
+  // Its address is one that its pins can select; otherwise this is reported, and the result false.
+  bool check_own_address(const Fields& fields, const Wiring& wiring, const Device& device);
+  // A sensor or actuator without a driver is virtual, but what its wiring names must exist.
+  void check_without_driver(const Fields& fields, const WiringType& type, const Wiring& wiring);
+  // Of what puts a voltage on pins of the board: `usual`, if its entry does not say `volts`; 0: that of the board.
+  void check_volts(const Fields& fields, vm::Value usual);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_echo(const Fields& fields, const Wiring& wiring);
   void check_analog(const Fields& fields, const Wiring& wiring);
@@ -87,6 +93,8 @@ private:
                             bool two_pins, const std::string& what);
   [[nodiscard]] Wiring read_part(const Fields& fields, const Board::Part& part);
   void take_address(const Fields& fields, const Wiring& place, const Board::Part* part, bool alone);
+  [[nodiscard]] std::string owner_on_board(const Fields& fields, const Wiring& wiring,
+                                           Span address) const;
   void report_taken(const OnBus& known, const Wiring& place, Span span);
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
   void refuse_pins(const Fields& fields);

@@ -37,6 +37,7 @@ std::vector<OnBus> on_buses(const vm::Image& image, const link::Devices& said) {
     const vm::Sensor& sensor = image.sensors[s];
     if (policy::is_fed(sensor) || !vm::is_on_i2c(sensor.driver)) continue;
     found.push_back({.name = name_of(image, s),
+                     .driver = driver_name(sensor.driver),
                      .bus = sensor.bus,
                      .address = sensor.address,
                      .asked = has(said.asked, s),
@@ -56,6 +57,15 @@ std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image) {
   return devices;
 }
 
+std::string found_text(const OnBus& device) {
+  std::string text =
+      name_on_bus(fmt::format("{} ({})", device.name, device.driver), device.address, device.bus);
+  text += device.asked ? " answers" : " has not been asked yet";
+  if (device.failed != 0)
+    text += fmt::format("; {} transfer{} failed", device.failed, device.failed == 1 ? "" : "s");
+  return text;
+}
+
 std::string silent_text(const OnBus& device) {
   const char* const look =
       device.held ? "a line of that bus is held low: do two wires touch, and does every device on "
@@ -70,6 +80,7 @@ nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices) {
   auto list = nlohmann::ordered_json::array();
   for (const OnBus& device : devices)
     list.push_back({{"sensor", device.name},
+                    {"driver", device.driver},
                     {"bus", device.bus},
                     {"address", fmt::format("0x{:02x}", device.address)},
                     {"answers", device.asked ? nlohmann::ordered_json(!device.silent) : nullptr},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,6 +16,8 @@ namespace robosync::tool {
 // A sensor of the running program on a bus.
 struct OnBus {
   std::string name;  // of the sensor
+  // Not the device, which the image does not have: several, such as tmp105 and tmp421, can have one driver.
+  std::string_view driver;
   unsigned bus = 0;
   unsigned address = 0;
   bool asked = false;   // the board has tried to read it
@@ -28,6 +31,8 @@ struct OnBus {
 // The devices that do not answer, once the board has asked all of them or has had the time to.
 [[nodiscard]] std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image);
 
+// "touch (max34451) at address 0x70 on i2c bus 0 answers"
+[[nodiscard]] std::string found_text(const OnBus& device);
 // "touch at address 0x70 on i2c bus 0 does not answer (12 transfers failed): …", with what to check.
 [[nodiscard]] std::string silent_text(const OnBus& device);
 [[nodiscard]] nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices);

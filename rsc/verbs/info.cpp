@@ -124,11 +124,9 @@ std::string buses_text(const Buses& buses) {
     failed += device.failed;
   std::string text = fmt::format("buses     {} sensors, {} failed transfers, {} bus clears\n",
                                  buses.devices.size(), failed, buses.clears);
-  for (const OnBus& device : buses.devices) {
-    if (device.silent) text += "silent    " + silent_text(device) + '\n';
-    if (!device.silent && device.failed != 0)
-      text += fmt::format("failed    {}: {} transfers\n", device.name, device.failed);
-  }
+  for (const OnBus& device : buses.devices)
+    text += device.silent ? "silent    " + silent_text(device) + '\n'
+                          : "found     " + found_text(device) + '\n';
   return text;
 }
 

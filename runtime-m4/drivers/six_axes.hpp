@@ -18,9 +18,10 @@ struct SixAxes {
   static constexpr unsigned kTurning = kAxes + 1;  // the first input of turning
   static constexpr unsigned kInputs = kTurning + kAxes;
 
+  // Not initialized, which would cost as much as reading it: nobody looks at it unless fetch() has filled it.
   struct Sample {
-    std::array<std::byte, kSettings> setting{};
-    std::array<std::byte, kMostOutputs> output{};
+    std::array<std::byte, kSettings> setting;
+    std::array<std::byte, kMostOutputs> output;
   };
   enum class Verdict : std::uint8_t { measured, sleeps, was_not_told, not_yet };
 

@@ -125,6 +125,24 @@ std::string length_of(std::uint16_t milliseconds, const std::string& never) {
   return milliseconds == 0 ? never : std::to_string(milliseconds) + " ms";
 }
 
+std::string addresses_of(const Device& device) {
+  std::vector<std::string> rows;
+  for (const Device::Addresses& one : device.addresses)
+    rows.push_back(one.first == one.last ? fmt::format("{:#04x}", one.first)
+                                         : fmt::format("{:#04x} to {:#04x}", one.first, one.last));
+  return joined(rows);
+}
+
+// What has a wire that brings a voltage to the board.
+std::string volts_row(const Device& device) {
+  const bool in = device.is_sensor ? !is_only_a_part(device) : device.type == "I2C";
+  if (is_virtual(device) || !in) return "";
+  return row({"`volts`", "the highest voltage that it puts on a pin of the board",
+              device.volts == 0
+                  ? "that of the board"
+                  : format_value(device.volts, canonical_unit(vm::Dimension::voltage))});
+}
+
 std::string wiring_keys(const Device& device) {
   const auto types = wiring_types();
   const auto type = std::ranges::find(types, device.type, &WiringType::name);
@@ -145,11 +163,13 @@ std::string wiring_keys(const Device& device) {
                 "required"});
   const bool screen = vm::drives_screen(driver_of(device));
   if (type->address)
-    rows += row(
-        {"`address`",
-         fmt::format("{:#04x} to {:#04x}", screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
-                     screen ? vm::kLastDisplayAddress : vm::kLastAddress),
-         "required"});
+    rows += row({"`address`",
+                 device.addresses.empty()
+                     ? fmt::format("{:#04x} to {:#04x}",
+                                   screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
+                                   screen ? vm::kLastDisplayAddress : vm::kLastAddress)
+                     : addresses_of(device),
+                 "required"});
   if (vm::drives_player(driver_of(device)))
     return row({"`bus`", "a serial line of the board", "1"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
@@ -263,8 +283,12 @@ std::string section_of(const Device& device) {
   text += row({"driver", device.has_driver ? code(driver.name) + ": " + std::string(driver.doc)
                                            : "none yet"});
   text += row({"boards", boards_of(device)});
+  const std::uint16_t shortest = device.is_sensor ? device.shortest_period_ms() : 0;
+  if (shortest != 0)
+    text += row({"highest rate",
+                 fmt::format("{}Hz: a new reading takes {} ms", 1000 / shortest, shortest)});
   text += device.is_sensor ? channel_table(device) : verb_table(device);
-  std::string keys = wiring_keys(device);
+  std::string keys = wiring_keys(device) + volts_row(device);
   if (device.is_sensor)
     keys += row({"`channels`",
                  "changes to the channels above: [keys of a channel](configuration.md#sensors)",

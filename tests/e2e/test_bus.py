@@ -72,6 +72,8 @@ class Bus(DebuggedTest):
         said = rsc.run("info", "--port", self.board.port)
         self.assertRegex(said, r"(?m)^buses     2 sensors, \d+ failed transfers, 0 bus clears$")
         self.assertRegex(said, r"(?m)^silent    ghost at address 0x33 on i2c bus 0 does not answer")
+        self.assertRegex(said, r"(?m)^found     touch \(max34451\) at address 0x70 on i2c bus 0 answers$")
+        self.assertNotIn("found     ghost", said)
         said = rsc.run("monitor", "--port", self.board.port, "--duration", "300ms")
         self.assertRegex(said, r"(?m)^ +silent  ghost at address 0x33")
         self.assertEqual(said.count("does not answer"), 1, said)  # in the first report only: the event itself is in the past
@@ -81,8 +83,10 @@ class Bus(DebuggedTest):
         done = self.begin(TOUCH)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.buses(), {"clears": 0, "devices": [
-            {"sensor": "touch", "bus": 0, "address": "0x70", "answers": True, "bus_held": False, "failed": 0}]})
-        self.assertNotIn("silent", rsc.run("info", "--port", self.board.port))
+            {"sensor": "touch", "driver": "max34451", "bus": 0, "address": "0x70", "answers": True, "bus_held": False, "failed": 0}]})
+        said = rsc.run("info", "--port", self.board.port)
+        self.assertNotIn("silent", said)
+        self.assertRegex(said, r"(?m)^found     touch \(max34451\) at address 0x70 on i2c bus 0 answers$")
 
     def test_one_that_falls_silent_and_comes_back_is_told_of_once_each(self):
         self.begin(TOUCH)
@@ -100,6 +104,7 @@ class Bus(DebuggedTest):
         self.assertEqual({(event["sensor"], event["bus"], event["address"]) for event in told}, {("touch", 0, "0x70")})
         device = self.buses()["devices"][0]
         self.assertEqual((device["answers"], device["failed"]), (True, 3 * ROUNDS))
+        self.assertIn(f"i2c bus 0 answers; {3 * ROUNDS} transfers failed\n", rsc.run("info", "--port", self.board.port))
 
     def test_a_device_that_was_interrupted_in_a_byte_gets_its_clocks(self):
         """The board is reset while the device sends a zero: the device holds the data line low until it gets more clocks."""

@@ -171,6 +171,7 @@ TEST_CASE("a sensor whose bus is held down is told at the upload, by info and by
   const json buses = json::parse(device.run({"info", "--format", "json"}).out).at("buses");
   CHECK(buses.at("clears") == 2);
   CHECK(buses.at("devices").at(0).at("answers") == false);
+  CHECK(buses.at("devices").at(0).at("driver") == "max34451");
 
   outcome = device.run({"monitor", "--duration", "200ms"});
   CHECK_THAT(outcome.out, Contains("       silent  "));

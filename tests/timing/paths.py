@@ -17,7 +17,8 @@ FIRMWARE = ROOT / "build/m4/bench/path.elf"
 RUNTIME_COSTS = ROOT / "runtime-m4/policy/costs.def"
 DRIVERS = ROOT / "vm/drivers.def"
 DEVICES = ["-device", "max34451,id=touch,address=0x70", "-device", "tmp105,address=0x48", "-device", "tmp105,address=0x19",
-           "-device", "tmp105,address=0x6a", "-device", "tmp105,address=0x5f", "-device", "tmp105,address=0x29",
+           "-device", "tmp105,address=0x6a", "-device", "tmp105,address=0x68", "-device", "tmp105,address=0x5f",
+           "-device", "tmp105,address=0x29",
            # In the place of a PCA9685, and of an SSD1306: it acknowledges all, and is never as it was set up.
            "-device", "tmp105,address=0x4a", "-device", "tmp105,address=0x3c"]
 PAUSE = 2**31 - 1  # kPause of path.cpp

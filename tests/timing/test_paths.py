@@ -233,7 +233,7 @@ class Sampling(unittest.TestCase):
              # In its place one that acknowledges all, and never is as it should be: it is told so again with each sample.
              "lsm303agr": ({"type": "I2C", "address": "0x19", "device": "lsm303agr"}, "X > 1g"),
              "lsm6dsl": ({"type": "I2C", "address": "0x6a", "device": "lsm6dsl"}, "X > 1g"),
-             "mpu6050": ({"type": "I2C", "address": "0x6a", "device": "mpu6050"}, "X > 1g"),
+             "mpu6050": ({"type": "I2C", "address": "0x68", "device": "mpu6050"}, "X > 1g"),
              "hts221": ({"type": "I2C", "address": "0x5f", "device": "hts221"}, "HUMIDITY > 50%"),
              "digital_input": ({"type": "GPIO", "pin": 43, "device": "switch"}, "IS closed"),
              "hc_sr04": ({"type": "GPIO", "trigger": 3, "echo": 43, "device": "hc-sr04"}, "< 30cm"),

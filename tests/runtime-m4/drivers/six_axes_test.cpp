@@ -28,6 +28,7 @@ constexpr std::size_t kReads = 2;  // transfers of a sample
 struct KnownChip {
   const char* name;
   const char* device;
+  std::uint8_t address;
   vm::DriverId driver;
   std::unique_ptr<test::SixAxesChip> (*make)();
 };
@@ -35,9 +36,10 @@ template <typename Chip>
 std::unique_ptr<test::SixAxesChip> make() {
   return std::make_unique<Chip>();
 }
-constexpr KnownChip kChips[] = {{"lsm6dsl", "lsm6dsl", vm::DriverId::lsm6dsl, make<test::Lsm6dsl>},
-                                {"mpu6050", "mpu6050", vm::DriverId::mpu6050, make<test::Mpu6050>},
-                                {"mpu6500", "mpu6050", vm::DriverId::mpu6050, make<test::Mpu6500>}};
+constexpr KnownChip kChips[] = {
+    {"lsm6dsl", "lsm6dsl", 0x6A, vm::DriverId::lsm6dsl, make<test::Lsm6dsl>},
+    {"mpu6050", "mpu6050", 0x68, vm::DriverId::mpu6050, make<test::Mpu6050>},
+    {"mpu6500", "mpu6050", 0x68, vm::DriverId::mpu6050, make<test::Mpu6500>}};
 
 struct Reader {
   explicit Reader(const KnownChip& known) : chip(known.make()), driver(known.driver) {
@@ -88,13 +90,14 @@ std::size_t logged(const test::Rig& rig, const std::string& text) {
 struct MovedRobot {
   explicit MovedRobot(const KnownChip& known) : chip(known.make()) {
     chip->now_ms = [this] { return rig.kernel.now() / 1000; };
-    rig.board.on_bus = [this](std::uint8_t, std::uint8_t address, std::span<const std::byte> out,
-                              std::span<std::byte> in) {
-      return address == 0x68 && chip->transfer(out, in);
+    rig.board.on_bus = [this, place = known.address](std::uint8_t, std::uint8_t address,
+                                                     std::span<const std::byte> out,
+                                                     std::span<std::byte> in) {
+      return address == place && chip->transfer(out, in);
     };
-    const std::string robot =
-        R"({"sensors": [{"name": "motion", "type": "I2C", "address": "0x68", "device": ")" +
-        std::string(known.device) + R"("}]})";
+    const std::string robot = R"({"sensors": [{"name": "motion", "type": "I2C", "address": )" +
+                              std::to_string(known.address) + R"(, "device": ")" + known.device +
+                              R"("}]})";
     REQUIRE(rig.activate(test::compile(R"(
 WHEN motion X > 0.5g DO LOG "right" END
 WHEN motion Y < -0.5g DO LOG "forward" END

@@ -1,0 +1,51 @@
+"""What a sample of a motion sensor costs the processor on the boards whose I2C master works by itself: i2c/….
+
+lsm6dsl_sample     on the B-L475E-IOT01A: two reads, of 3 and of 12 bytes
+lsm303agr_sample   on the micro:bit V2: one read, of 14 bytes
+
+A sample is the driver's call that asks for the reads, the bus interrupts, and the driver's call that takes the bytes. The
+instructions of these are counted in the shipped firmware. The two times that the sensor's thread wakes for them are not
+included: `wake_by_timer` of the board's costs.def is the most that one takes.
+
+QEMU has neither the masters nor the sensors. So the tests of tests/e2e/on_….py play both, through the debugger and the
+registers' log, and count while they do. This runs one of these tests, and fails if it does.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+from board import NAME, ROOT
+from counting import BenchError
+
+# The board, its test, and the figure.
+TESTS = {"b-l475e-iot01a": ("on_l475", "Bus", "test_the_motion_sensor_on_the_board_is_told_and_read_and_what_that_costs",
+                            "lsm6dsl_sample"),
+         "microbit-v2": ("on_microbit", "OnMicrobit", "test_what_the_bus_costs", "lsm303agr_sample")}
+
+
+def sample_of_this_board():
+    sys.path.append(str(ROOT / "tests/e2e"))
+    module, case, name, _ = TESTS[NAME]
+    test = getattr(__import__(module), case)(name)
+    result = unittest.TestResult()
+    test.run(result)
+    if not result.wasSuccessful() or result.skipped:
+        raise BenchError(f"{module}.{case}.{name}: {result.failures or result.errors or result.skipped}")
+    return test.most_of_a_sample
+
+
+def i2c_figures():
+    asked = {board: subprocess.Popen([sys.executable, __file__], env={**os.environ, "ROBOSYNC_BOARD": board}, text=True,
+                                     stdin=subprocess.DEVNULL, stdout=subprocess.PIPE) for board in TESTS}
+    said = {board: process.communicate()[0].splitlines() for board, process in asked.items()}
+    failed = [board for board, process in asked.items() if process.returncode != 0]
+    if failed:
+        raise BenchError(f"no sample on {', '.join(failed)}")
+    return {f"i2c/{TESTS[board][3]}": (json.loads(lines[-1]), "insn") for board, lines in said.items()}
+
+
+if __name__ == "__main__":
+    print(json.dumps(sample_of_this_board()))
