@@ -46,6 +46,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/json_mistakes.cpp
   config/json_reader.cpp
   config/names.cpp
+  config/drive.cpp
   config/panel.cpp
   config/robot.cpp
   config/robot_reader.cpp

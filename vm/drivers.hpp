@@ -17,6 +17,8 @@ namespace robosync::vm {
 //   screen      a picture on a display, which is among the sensors in the same way
 //   line        commands to a sound player on a serial line of the board, the image's `bus`
 //   panel       a picture, or a colour, on a chain of lights at its pin; a robot has one panel
+//   wheels      the power of two motors, each like either_way; a robot has one such drive, and vm/drive.hpp says where its image
+//               has the pins
 enum class PinUse : std::uint8_t {
   nothing,
   pulses,
@@ -27,7 +29,8 @@ enum class PinUse : std::uint8_t {
   channel,
   screen,
   line,
-  panel
+  panel,
+  wheels
 };
 
 constexpr PinUse pin_use(DriverId driver) {
@@ -81,13 +84,17 @@ constexpr bool drives_panel(DriverId driver) {
 constexpr bool is_strip(DriverId driver) {
   return driver == DriverId::ws2812_strip;
 }
+constexpr bool drives_wheels(DriverId driver) {
+  return pin_use(driver) == PinUse::wheels;
+}
 // It gets its orders in messages, and each message takes time.
 constexpr bool is_told(DriverId driver) {
   return drives_player(driver) || drives_panel(driver);
 }
 // It continues on its own until it is ended, so it cannot hold in a halt.
 constexpr bool drives_on(DriverId driver) {
-  return gives_power(driver) || drives_speaker(driver) || drives_player(driver);
+  return gives_power(driver) || drives_speaker(driver) || drives_player(driver) ||
+         drives_wheels(driver);
 }
 
 // How a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, the sensor's

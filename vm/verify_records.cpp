@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "vm/drive.hpp"
 #include "vm/drivers.hpp"
 #include "vm/timers.hpp"
 #include "vm/verification.hpp"
@@ -30,6 +31,7 @@ struct Walk {
   std::uint32_t servo_chips = 0;
   std::uint32_t displays = 0;
   std::uint32_t microphones = 0;
+  std::uint32_t drives = 0;
 };
 
 enum class DriverKind : std::uint8_t { sensor, actuator };
@@ -224,6 +226,7 @@ std::uint32_t output_of(const Actuator& actuator) {
     case PinUse::panel:
       return actuator.pin;
     case PinUse::channel:
+    case PinUse::wheels:
     case PinUse::nothing:
       break;
   }
@@ -235,7 +238,17 @@ std::uint32_t second_output_of(const Actuator& actuator) {
   return has_two_pins(actuator.driver) ? actuator.bus : kNothing;
 }
 
-bool owns(const Actuator& actuator, std::uint32_t output) {
+// The drive's parameters must have been checked.
+DriveParameters drive_of(const Image& image, const Actuator& drive) {
+  return vm::drive_of(image.constants.data() + drive.pin);
+}
+
+bool owns(const Image& image, const Actuator& actuator, std::uint32_t output) {
+  if (drives_wheels(actuator.driver)) {
+    for (const std::uint8_t pin : drive_of(image, actuator).pins)
+      if (pin == output) return true;
+    return false;
+  }
   return output_of(actuator) == output || second_output_of(actuator) == output;
 }
 
@@ -243,7 +256,7 @@ bool owns(const Actuator& actuator, std::uint32_t output) {
 bool is_taken(const Walk& walk, std::uint32_t output, std::size_t index) {
   if (walk.reads_pins && is_of_sensor(walk.image, output, walk.image.sensors.size())) return true;
   for (std::size_t a = 0; a < index; ++a)
-    if (owns(walk.image.actuators[a], output)) return true;
+    if (owns(walk.image, walk.image.actuators[a], output)) return true;
   return false;
 }
 
@@ -274,6 +287,26 @@ Refusal check_channel_of_chip(const Walk& walk, const Actuator& servo, std::size
   return Refusal::none;
 }
 
+bool is_trim(std::uint8_t percent) {
+  return percent > 0 && percent <= kFullTrim;
+}
+
+// Each of the four pins is an output of its own, and neither motor may go on in the safe state.
+Refusal check_drive(Walk& walk, const Actuator& drive, std::size_t index) {
+  if (++walk.drives > kMaxDrives) return Refusal::too_many;
+  if (!is_inside(drive.pin, kDriveValues, walk.image.constants.size())) return Refusal::bad_index;
+  const DriveParameters has = drive_of(walk.image, drive);
+  for (std::size_t p = 0; p < has.pins.size(); ++p) {
+    if (is_taken(walk, has.pins[p], index)) return Refusal::shared_pin;
+    for (std::size_t before = 0; before < p; ++before)
+      if (has.pins[before] == has.pins[p]) return Refusal::shared_pin;
+  }
+  if (drive.safe == Release::hold) return Refusal::drives_on;
+  return good_or(Refusal::bad_value, drive.bus == 0 && has.reserved == 0 && is_trim(has.trim[0]) &&
+                                         is_trim(has.trim[1]) && has.speed > 0 && has.track > 0 &&
+                                         has.track <= kMostTrack && has.usual > 0);
+}
+
 bool has_display(const Image& image, const Actuator& face) {
   return face.bus < image.sensors.size() && is_display(image.sensors[face.bus].driver);
 }
@@ -287,6 +320,7 @@ Refusal check_actuator(Walk& walk, const Actuator& actuator, std::size_t index) 
   if (driver != Refusal::none) return driver;
   if (drives_screen(actuator.driver) && !has_display(walk.image, actuator))
     return Refusal::bad_index;
+  if (drives_wheels(actuator.driver)) return check_drive(walk, actuator, index);
   return drives_channel(actuator.driver) ? check_channel_of_chip(walk, actuator, index)
                                          : check_output(walk, actuator, index);
 }

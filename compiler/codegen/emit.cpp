@@ -27,6 +27,7 @@ public:
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
     records_ = make_records(written, robot, tables, strings_);
     add_algorithms(robot, tables);
+    if (records_.drive) add_drive(vm::values_of(*records_.drive));
     if (diagnostics_.errors() > 0 || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
@@ -36,6 +37,7 @@ public:
 
 private:
   void add_algorithms(const Robot& robot, const Tables& tables);
+  void add_drive(const vm::DriveValues& values);
   bool counts_fit();
   void lay_out();
   vm::Image sections() const;
@@ -65,6 +67,12 @@ void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
     record.address = place_row(constants_, algorithm->config);
     record.first_input = tables.input({algorithm->input, 0});
   }
+}
+
+void Emitter::add_drive(const vm::DriveValues& values) {
+  const auto place = place_row(constants_, std::vector<vm::Value>(values.begin(), values.end()));
+  for (vm::Actuator& record : records_.actuators)
+    if (vm::drives_wheels(record.driver)) record.pin = place;
 }
 
 bool Emitter::counts_fit() {

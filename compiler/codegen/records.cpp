@@ -175,6 +175,7 @@ void RecordMaker::actuator(std::size_t place) {
     record.bus = config.panel->lay;
     record.speed_limit = config.panel->color;
   }
+  if (config.drive) records_.drive = config.drive;
   if (gets_power(config)) keep_power(record);
   if (config.driver == vm::DriverId::virtual_actuator &&
       keeps_its_place(config, record.speed_limit)) {

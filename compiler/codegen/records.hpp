@@ -1,6 +1,7 @@
 // The records of devices and variables: everything in the image apart from rules and code.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "compiler/codegen/tables.hpp"
@@ -22,6 +23,7 @@ struct Records {
   std::vector<vm::Motion> motions;
   std::vector<vm::Track> tracks;
   std::vector<vm::Key> keys;
+  std::optional<vm::DriveParameters> drive;
 };
 
 // Adds names and labels to `strings`.

@@ -112,7 +112,6 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
   const Fields fields(value, Object::limits, diagnostics);
   const auto* speed = fields.find("SPEED");
   if (speed == nullptr) return;
-  actuator.limit_span = speed->span;
   if (actuator.at_unit == nullptr) {
     diagnostics.report(Code::E0205, "this device has no speed to limit").label(speed->span);
     return;
@@ -120,8 +119,17 @@ void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics
   const auto limit = read_quantity(*speed, *actuator.at_unit, diagnostics);
   if (limit && *limit <= 0)
     diagnostics.report(Code::E0205, "a speed must be above 0").label(speed->span);
-  else if (limit)
+  else if (limit && *limit < actuator.speed_limit) {
     actuator.speed_limit = *limit;
+    actuator.limit_span = speed->span;
+  }
+}
+
+void report_keys_of_drives(const Fields& fields, Diagnostics& diagnostics) {
+  for (const std::string_view key : drive_keys())
+    if (const auto* value = fields.find(key))
+      diagnostics.report(Code::E0205, "only a `differential_drive` has `" + std::string(key) + "`")
+          .label(value->span);
 }
 
 // A program takes as long as it would with the real actuator.
@@ -194,6 +202,9 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
     const Wiring place = wiring.read_display(fields, *type);
     actuator.bus = place.bus;
     actuator.pin = place.place;
+  } else if (type != nullptr && type->name == "PWM" && vm::drives_wheels(actuator.driver)) {
+    wiring.take_drive(fields, *type);
+    actuator.drive = read_drive(fields, wiring, actuator, diagnostics);
   } else if (type != nullptr) {
     const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
     actuator.bus = place.bus;
@@ -209,10 +220,15 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   }
   if (type != nullptr) check_voltage(fields, *type, device, wiring, diagnostics);
   actuator.panel = read_lights(fields, device.actuator.driver, diagnostics);
+  if (!vm::drives_wheels(device.actuator.driver)) report_keys_of_drives(fields, diagnostics);
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);
   if (const auto* sounds = fields.find("sounds"))
     read_sounds(*sounds, device, actuator, diagnostics);
+  if (actuator.drive) {
+    actuator.speed_limit = actuator.drive->speed;
+    actuator.limit_span = fields.find("speed")->span;
+  }
   if (const auto* limits = fields.find("limits")) read_limits(*limits, actuator, diagnostics);
   if (const auto* release = fields.find("on_release"))
     actuator.on_release = read_release(*release, diagnostics).value_or(actuator.on_release);

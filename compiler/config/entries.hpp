@@ -34,6 +34,14 @@ inline constexpr std::int64_t kUsualPanelPercent = 10;
 inline constexpr std::int64_t kMostPanelPercent = 20;
 [[nodiscard]] std::vector<std::string_view> panel_colors();
 
+// Reads the wiring of a differential drive and its measures. nullopt: some are wrong or missing, which is reported.
+[[nodiscard]] std::optional<vm::DriveParameters> read_drive(Fields& fields, WiringReader& wiring,
+                                                            const ActuatorConfig& actuator,
+                                                            Diagnostics& diagnostics);
+inline constexpr vm::Value kLeastTrim = 50;  // percent; a larger difference is a fault of the robot
+// The keys that only a differential drive has.
+[[nodiscard]] std::span<const std::string_view> drive_keys();
+
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,
                                                Diagnostics& diagnostics);

@@ -16,6 +16,7 @@ enum class Object : std::uint8_t {
   sensor,
   channel,
   actuator,
+  trim,
   sound,
   limits,
   behavior,

@@ -11,6 +11,7 @@
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/units/units.hpp"
+#include "vm/drive.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::compiler {
@@ -126,6 +127,7 @@ struct ActuatorConfig {
   std::uint16_t pin = 0;  // or the channel of its chip, or the address of its display
   std::optional<ServoChip> chip;
   std::optional<PanelConfig> panel;
+  std::optional<vm::DriveParameters> drive;
   vm::Release on_release = vm::Release::hold;
   vm::Release safe = vm::Release::hold;
   const Unit* to_unit = nullptr;  // of TO and BY; null: it has no position

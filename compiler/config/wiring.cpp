@@ -152,6 +152,35 @@ void WiringReader::read_pins(Fields& fields, bool two, const std::string& what, 
   }
 }
 
+std::optional<std::array<std::uint8_t, 2>> WiringReader::read_motor(const json::Value& value,
+                                                                    std::string_view side) {
+  if (value.kind != json::Kind::array || value.items.size() != 2) {
+    diagnostics_.report(Code::E0205, "the " + std::string(side) + " motor has two pins")
+        .label(value.span)
+        .helps("write `\"" + std::string(side) +
+               "\": [4, 5]`: the first drives it forward, the second backward");
+    return std::nullopt;
+  }
+  std::array<std::uint8_t, 2> pins{};
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    pins.at(i) = static_cast<std::uint8_t>(read_pin(value.items[i], UINT8_MAX));
+    check_output_pin(value.items[i], pins.at(i), true);
+  }
+  return pins;
+}
+
+void WiringReader::take_drive(const Fields& fields, const WiringType& type) {
+  report_foreign(fields, type);
+  const Span span = fields.find("device")->span;
+  if (drive_) {
+    diagnostics_.report(Code::E0207, "a robot can have only one differential drive")
+        .label(span)
+        .label(*drive_, "the first one", false);
+  } else {
+    drive_ = span;
+  }
+}
+
 void WiringReader::take_pin(std::uint16_t pin, Span span) {
   const auto [first, added] = pins_.emplace(pin, span);
   if (added) return;

@@ -1,6 +1,7 @@
 // How sensors and actuators are connected: types, buses, addresses and pins.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -51,6 +52,11 @@ public:
   [[nodiscard]] ChipWiring read_chip(Fields& fields);
   // A display's bus, which the board must have, and its address, which nothing else may use.
   [[nodiscard]] Wiring read_display(Fields& fields, const WiringType& type);
+  // The two pins of a motor of a drive, `[4, 5]`; `side` is its key. nullopt: they are wrong.
+  [[nodiscard]] std::optional<std::array<std::uint8_t, 2>> read_motor(const json::Value& value,
+                                                                      std::string_view side);
+  // Of a differential drive: a robot has at most one. Reports keys that it cannot have.
+  void take_drive(const Fields& fields, const WiringType& type);
   // All servos of a chip must have the same safe state. `span`: where `safe` is set, or else the entry.
   void check_safe(const ServoChip& chip, vm::Release safe, Span span);
   // For drivers that use them: checks that the board has them.
@@ -116,7 +122,7 @@ private:
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
   std::map<std::uint8_t, Span> lines_;
-  std::optional<Span> panel_;
+  std::optional<Span> panel_, drive_;
   std::optional<Span> microphone_, analog_;                           // the first ones
   std::map<const Board::Part*, Span> parts_;                          // without a pin
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address

@@ -183,6 +183,15 @@ std::optional<Followed> Commands::follow_by(std::size_t actuator, const std::vec
         .label(config.name.span, "it has no verb with TO", false);
     return std::nullopt;
   }
+  if (config.drive) {
+    diagnostics.report(Code::E0512, config.name.shown() + " cannot follow")
+        .label(verb.span)
+        .label(config.name.span, "it drives by timing: nothing measures where it is", false)
+        .helps(
+            "drive a distance with `DRIVE`; or wire each wheel as a `motor`, whose power can "
+            "follow");
+    return std::nullopt;
+  }
   Followed result;
   result.command.actuators = {actuator};
   result.command.verb = {std::string(kFollow), vm::Action::follow, kTakes};

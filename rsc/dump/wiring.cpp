@@ -9,7 +9,7 @@
 #include "rsc/quantity.hpp"
 #include "runtime-m4/algorithms/modules.hpp"
 #include "runtime-m4/policy/threads.hpp"
-#include "vm/drivers.hpp"
+#include "vm/drive.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -96,7 +96,18 @@ std::string verb_names(const vm::Image& image, std::uint32_t mask) {
   return fmt::format("{}", fmt::join(verbs, " "));
 }
 
-std::string place_of(const vm::Actuator& actuator) {
+std::string drive_text(const vm::DriveParameters& drive) {
+  return fmt::format(
+      "pins {} and {} (left, {} %), {} and {} (right, {} %), {} with full power, track {}, usually "
+      "{}",
+      drive.pins[0], drive.pins[1], drive.trim[0], drive.pins[2], drive.pins[3], drive.trim[1],
+      number(drive.speed), number(drive.track), number(drive.usual));
+}
+
+std::string place_of(const vm::Image& image, const vm::Actuator& actuator) {
+  if (vm::drives_wheels(actuator.driver) &&
+      actuator.pin + vm::kDriveValues <= image.constants.size())
+    return drive_text(vm::drive_of(image.constants.data() + actuator.pin));
   if (vm::drives_channel(actuator.driver))
     return fmt::format("channel {} of sensor {}", actuator.pin, actuator.bus);
   if (vm::drives_screen(actuator.driver)) return fmt::format("sensor {}", actuator.bus);
@@ -125,7 +136,7 @@ std::string actuators(const vm::Image& image) {
     const vm::Actuator& actuator = image.actuators[i];
     text += fmt::format("  {} {}: {} on {}, range {} … {}, {}, release {}, safe {}; {}\n", i,
                         image.string(actuator.name), driver_name(actuator.driver),
-                        place_of(actuator), number(actuator.min), number(actuator.max),
+                        place_of(image, actuator), number(actuator.min), number(actuator.max),
                         limit_of(actuator), word_of(kReleases, actuator.on_release),
                         word_of(kReleases, actuator.safe), verb_names(image, actuator.verbs));
   }

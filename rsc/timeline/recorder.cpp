@@ -9,6 +9,7 @@
 #include "compiler/units/units.hpp"
 #include "rsc/timeline/pictures.hpp"
 #include "rsc/timeline/thresholds.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -46,10 +47,11 @@ Json labels_of(const vm::Image& image, std::size_t first, std::size_t count) {
   return labels;
 }
 
-// A position, a power or a picture stays when its command is done, except with FOR. Power 0 is nothing.
+// A position, a power or a picture stays when its command is done, except with FOR. Power 0 is nothing. A drive ends its own.
 bool has_lasting_effect(const link::Event& event, const TraceNames& names) {
   const EventReader reader(event, names);
   if (names.image == nullptr || event.object >= names.image->verbs.size()) return false;
+  if (vm::drives_wheels(names.image->actuators[event.subject].driver)) return false;
   const vm::Action action = names.image->verbs[event.object].action;
   if (action != vm::Action::set && action != vm::Action::move && action != vm::Action::follow)
     return false;

@@ -59,6 +59,9 @@ struct Device {
   void drive_either(std::int32_t pulse_us, kernel::Time now) const {
     outputs.drive_either(state.actuator, pulse_us, now);
   }
+  void drive_wheels(std::int32_t left_us, std::int32_t right_us, kernel::Time now) const {
+    outputs.drive_wheels(state.actuator, left_us, right_us, now);
+  }
   void show(std::uint32_t picture) const { outputs.show(state.actuator, picture); }
   void sound(std::uint32_t hertz) const { outputs.sound(state.actuator, hertz); }
   void play(std::uint16_t sound) const { outputs.play(state.actuator, sound); }

@@ -52,7 +52,7 @@ constexpr std::uint16_t place_of(const vm::Actuator& actuator) {
 
 // Is the pin an output of an actuator or a sensor, or released for a sensor?
 bool has_pin(const vm::Image& image, std::uint16_t pin) {
-  const bool drives = std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
+  const bool drives = vm::any_wired(image, [&](const vm::Actuator& actuator) {
     return vm::drives_pin(actuator.driver) &&
            (actuator.pin == pin || (vm::has_two_pins(actuator.driver) && actuator.bus == pin));
   });
@@ -89,7 +89,7 @@ void OutputGuard::exchange(Slot& slot) {
 bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   const std::uint16_t first = slot.second ? slot.other : slot.pin;
   const std::uint16_t second = slot.second ? slot.pin : slot.other;
-  return std::ranges::any_of(image.actuators, [&](const vm::Actuator& actuator) {
+  return vm::any_wired(image, [&](const vm::Actuator& actuator) {
     const std::uint16_t place = place_of(actuator);
     return place == first && actuator.driver == slot.driver &&
            (second == kNoPin || actuator.bus == second);
@@ -153,11 +153,17 @@ void OutputGuard::switch_off(const vm::Image* next) {
   if (speaker() != 0) board_.sound(0);
   switch_chips_off();
   for (Mask left = owned & ~(lights() | speaker() | on_chips_); left != 0; left &= left - 1) {
-    const Slot& slot = slots_[static_cast<unsigned>(std::countr_zero(left))];
-    const bool moves = next != nullptr && next->has_safety() && vm::gives_power(slot.driver);
-    if (next == nullptr || !drives(*next, slot) || moves) switch_off(slot);
+    const auto actuator = static_cast<unsigned>(std::countr_zero(left));
+    end(slots_[actuator], next);
+    if (is_drive(actuator)) end(right_wheel_, next);
   }
-  lights_ = speaker_ = on_chips_ = 0;
+  lights_ = speaker_ = on_chips_ = drive_ = 0;
+  drive_parameters_ = nullptr;
+}
+
+void OutputGuard::end(const Slot& slot, const vm::Image* next) {
+  const bool moves = next != nullptr && next->has_safety() && vm::gives_power(slot.driver);
+  if (next == nullptr || !drives(*next, slot) || moves) switch_off(slot);
 }
 
 void OutputGuard::switch_off(const Slot& slot) {
@@ -199,6 +205,7 @@ OutputGuard::Mask OutputGuard::own_actuators(const vm::Image& image) {
       own_told(a, actuator);
       owned |= bit(a);
     }
+    if (vm::drives_wheels(actuator.driver) && own_wheels(a, image)) owned |= bit(a);
     if (!vm::drives_pin(actuator.driver) || !policy::can_drive(actuator, pins)) continue;
     slots_[a] = slot_of(actuator, pins);
     owned |= bit(a);
@@ -264,6 +271,19 @@ OutputGuard::Slot OutputGuard::slot_of(const vm::Actuator& actuator,
   return slot;
 }
 
+// The image must be verified. A halt treats a drive apart, because it has two motors.
+bool OutputGuard::own_wheels(unsigned actuator, const vm::Image& image) {
+  const vm::Actuator& drive = image.actuators[actuator];
+  const vm::DriveParameters parameters = vm::drive_of(image.constants.data() + drive.pin);
+  if (!policy::can_drive(drive, parameters, board_.pins())) return false;
+  slots_[actuator] = slot_of(vm::motor_of(drive, parameters, vm::Side::left), board_.pins());
+  right_wheel_ = slot_of(vm::motor_of(drive, parameters, vm::Side::right), board_.pins());
+  drive_ = bit(actuator);
+  drive_parameters_ = image.constants.data() + drive.pin;
+  apart_ |= bit(actuator);
+  return true;
+}
+
 void OutputGuard::own_lights(unsigned actuator, vm::Release safe) {
   lights_ = bit(actuator);
   lights_stay_ = safe == vm::Release::hold;
@@ -322,11 +342,15 @@ void OutputGuard::play(unsigned actuator, std::uint16_t sound) {
 }
 
 // Changes to the other pin, after turning this one off.
-void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
+void OutputGuard::change_pin(Slot& slot, kernel::Time now) {
   board_.pwm_write(slot.pin, 0);
   exchange(slot);
   slot.pulse = 0;
   slot.changed = static_cast<std::uint16_t>(now / 1000);
+}
+
+void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
+  change_pin(slot, now);
   limits_[slot.limit].rise != 0 ? gradual_ |= bit(actuator) : gradual_ &= ~bit(actuator);
 }
 
@@ -338,6 +362,37 @@ void OutputGuard::turn(Slot& slot, unsigned actuator, kernel::Time now) {
     return put(actuator, now);
   slot.pulse = pulse;
   board_.pwm_write(slot.pin, pulse);
+}
+
+[[gnu::always_inline]] inline bool OutputGuard::is_drive(unsigned actuator) const {
+  return (drive_ & bit(actuator)) != 0;
+}
+
+[[gnu::noinline]] void OutputGuard::drive_wheels(unsigned actuator, std::int32_t left_us,
+                                                 std::int32_t right_us, kernel::Time now) {
+  const auto lock = kernel_.lock();
+  if (!is_free(actuator) || !is_drive(actuator)) return;
+  aim_wheel(slots_[actuator], left_us, now);
+  aim_wheel(right_wheel_, right_us, now);
+  put_wheels(actuator, now);
+}
+
+// Negative: on the second pin.
+void OutputGuard::aim_wheel(Slot& wheel, std::int32_t pulse_us, kernel::Time now) {
+  const bool second = pulse_us < 0;
+  const auto length = static_cast<std::uint32_t>(pulse_us);
+  if (pulse_us != 0 && second != wheel.second) change_pin(wheel, now);
+  wheel.target = within(limits_[wheel.limit], second ? 0 - length : length);
+}
+
+void OutputGuard::put_wheels(unsigned actuator, kernel::Time now) {
+  lagging_ &= ~bit(actuator);
+  for (Slot* const wheel : {&slots_[actuator], &right_wheel_}) {
+    const std::uint16_t rise = limits_[wheel->limit].rise;
+    wheel->pulse = rise == 0 ? wheel->target : next_pulse(*wheel, rise, false, now);
+    if (wheel->pulse != wheel->target) lagging_ |= bit(actuator);
+    board_.pwm_write(wheel->pin, wheel->pulse);
+  }
 }
 
 void OutputGuard::go_on(kernel::Time now) {
@@ -355,6 +410,7 @@ void OutputGuard::go_on(kernel::Time now) {
 
 // Moves the pulse as far towards its target as the time since the last write allows.
 [[gnu::noinline]] void OutputGuard::put(unsigned actuator, kernel::Time now) {
+  if (is_drive(actuator)) return put_wheels(actuator, now);
   Slot& slot = slots_[actuator];
   const policy::PinLimit& limit = limits_[slot.limit];
   slot.pulse = next_pulse(slot, limit.rise, limit.shortest != 0, now);
@@ -414,6 +470,10 @@ void OutputGuard::make_safe(unsigned actuator, kernel::Time now) {
     if (is_on_panel(slot.driver)) on_panel_ = 0;
     lagging_ |= bit(actuator);
     return;
+  }
+  if (is_drive(actuator)) {
+    slot.target = right_wheel_.target = 0;
+    return put_wheels(actuator, now);
   }
   if (slot.safe != kStays && slot.pulse != 0) return settle(slot, actuator, slot.safe, now);
   slot.target = slot.pulse;
@@ -565,37 +625,6 @@ void OutputGuard::let_chip_on(unsigned sensor) {
   if (!driven) return;
   board_.enable(chip->enable, true);
   chip->on = true;
-}
-
-// --- displays ---
-
-// The image must be verified.
-void OutputGuard::own_displays(const vm::Image& image) {
-  for (unsigned a = 0; a < image.actuators.size() && display_count_ < displays_.size(); ++a) {
-    const vm::Actuator& actuator = image.actuators[a];
-    if (!vm::drives_screen(actuator.driver)) continue;
-    slots_[a] = {};
-    on_chips_ |= bit(a);
-    displays_[display_count_++] = {.screen = {},
-                                   .picture = 0,
-                                   .sensor = actuator.bus,
-                                   .actuator = static_cast<std::uint8_t>(a),
-                                   .holds = actuator.safe == vm::Release::hold};
-  }
-}
-
-std::uint32_t OutputGuard::picture_on(unsigned sensor) const {
-  const auto lock = kernel_.lock();
-  for (const Display& display : std::span(displays_).first(display_count_))
-    if (display.sensor == sensor) return display.picture;
-  return 0;
-}
-
-OutputGuard::Screen* OutputGuard::screen_of(unsigned sensor) {
-  const auto lock = kernel_.lock();
-  for (Display& display : std::span(displays_).first(display_count_))
-    if (display.sensor == sensor) return &display.screen;
-  return nullptr;
 }
 
 // --- devices that are told their orders: players and the panel ---

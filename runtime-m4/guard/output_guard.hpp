@@ -8,6 +8,7 @@
 //   A pin that is off stays off: a failure never makes anything start to move.
 //
 // A motor on an H-bridge has two pins. At most one of them is on: it goes off before the other one goes on.
+// A drive has two such motors, which get their power together and are halted together.
 //
 // The lights of a board are guarded in the same way. The actuator that shows a picture owns them. They go dark when the program
 // ends, and with a halt unless the safe state is to hold. The speaker of a board goes silent in both cases, whatever its safe
@@ -76,6 +77,11 @@ public:
   void begin_order(unsigned actuator);
   // Pulse of an actuator with two pins: on the first pin if positive, on the second if negative.
   void drive_either(unsigned actuator, std::int32_t pulse_us, kernel::Time now);
+  // Pulses of the two motors of a drive, each as for drive_either().
+  void drive_wheels(unsigned actuator, std::int32_t left_us, std::int32_t right_us,
+                    kernel::Time now);
+  // The parameters of the drive, in the running program's image; null: it has no drive.
+  [[nodiscard]] const vm::Value* drive_parameters() const { return drive_parameters_; }
   // The picture on the lights (boards::Board::show()), or on the actuator's display or panel; for a strip, its colour.
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
@@ -171,7 +177,11 @@ private:
   std::uint16_t next_pulse(Slot& slot, std::uint16_t rise, bool pulses, kernel::Time now) const;
   [[nodiscard]] bool is_free(unsigned actuator) const;
   static void exchange(Slot& slot);
+  void change_pin(Slot& slot, kernel::Time now);
   void turn(Slot& slot, unsigned actuator, kernel::Time now);
+  [[nodiscard]] bool is_drive(unsigned actuator) const;
+  void aim_wheel(Slot& wheel, std::int32_t pulse_us, kernel::Time now);
+  void put_wheels(unsigned actuator, kernel::Time now);
   void own_told(unsigned actuator, const vm::Actuator& wiring);
   void tell(unsigned actuator, kernel::Time now);
   void say(const Slot& player, std::uint16_t sound);
@@ -186,6 +196,8 @@ private:
   void let_go_of(Pins measured);
   void listen(bool on);
   void switch_off(const vm::Image* next);
+  void end(const Slot& slot, const vm::Image* next);
+  [[nodiscard]] bool own_wheels(unsigned actuator, const vm::Image& image);
   void own_lights(unsigned actuator, vm::Release safe);
   [[nodiscard]] Mask own_actuators(const vm::Image& image);
   void own_chips(const vm::Image& image);
@@ -213,13 +225,16 @@ private:
   Mask free_ = 0;     // owned, and not halted
   Mask gradual_ = 0;  // their pulse may only change gradually
   Mask apart_ =
-      0;  // a halt does not write one pulse to a pin: they keep theirs, or are on a chip or a line
+      0;  // a halt does not write one pulse to a pin: they keep theirs, are on a chip or a line, or have two motors
   Mask lagging_ = 0;  // not yet at their target, or not told their order yet
   Mask lights_ = 0;
   Mask speaker_ = 0;
   // In their slots, `pin` is the channel, and `target` the pulse that the chip has. Displays count as chips; their slots are
   // empty.
   Mask on_chips_ = 0;
+  Mask drive_ = 0;      // has two motors: its slot is the left one's
+  Slot right_wheel_{};  // of the drive
+  const vm::Value* drive_parameters_ = nullptr;
   Mask limp_ = 0;             // on chips, off until their next orders
   bool lights_stay_ = false;  // on in the safe state
   std::uint8_t chip_count_ = 0;

@@ -31,12 +31,14 @@ target_sources(robosync_runtime PRIVATE
   layers/triggers.cpp
   layers/variables.cpp
   layers/workspace.cpp
+  guard/displays.cpp
   guard/output_guard.cpp
   safety/rule_key.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/algorithm.cpp
   drivers/axes.cpp
+  drivers/differential_drive.cpp
   drivers/digital_input.cpp
   drivers/ear.cpp
   drivers/hc_sr04.cpp

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "vm/drive.hpp"
 #include "vm/drivers.hpp"
 #include "vm/image.hpp"
 #include "vm/verifier.hpp"
@@ -122,6 +123,14 @@ constexpr bool can_drive(const vm::Actuator& actuator, const BoardPins& board) {
          (!vm::has_two_pins(actuator.driver) || can_drive(actuator.driver, actuator.bus, board));
 }
 
+// `parameters` are those of the drive in its image.
+constexpr bool can_drive(const vm::Actuator& drive, const vm::DriveParameters& parameters,
+                         const BoardPins& board) {
+  for (const vm::Side side : vm::kSides)
+    if (!can_drive(vm::motor_of(drive, parameters, side), board)) return false;
+  return true;
+}
+
 inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
   for (std::size_t s = 0; s < image.sensors.size(); ++s) {
     const vm::Refusal refusal = judge(image.sensors[s], board);
@@ -131,6 +140,9 @@ inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
   for (std::size_t a = 0; a < image.actuators.size(); ++a) {
     const vm::Actuator& actuator = image.actuators[a];
     if (vm::drives_pin(actuator.driver) && !can_drive(actuator, board))
+      return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
+    if (vm::drives_wheels(actuator.driver) &&
+        !can_drive(actuator, vm::drive_of(image.constants.data() + actuator.pin), board))
       return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
     if (vm::drives_player(actuator.driver) && !is_line(board, actuator.bus))
       return {vm::Refusal::no_bus, vm::Section::actuators, static_cast<std::uint16_t>(a)};

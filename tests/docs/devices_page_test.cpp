@@ -16,6 +16,7 @@
 #include "compiler/units/units.hpp"
 #include "tests/docs/pages.hpp"
 #include "tests/support/generated.hpp"
+#include "vm/drive.hpp"
 #include "vm/drivers.hpp"
 
 namespace {
@@ -89,7 +90,7 @@ bool runs_on(const Device& device, const Board& board) {
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
   if (vm::is_analog(driver)) return !board.analog.empty();
-  return vm::drives_pin(driver) && !board.outputs.empty();
+  return (vm::drives_pin(driver) || vm::drives_wheels(driver)) && !board.outputs.empty();
 }
 
 std::string boards_of(const Device& device) {
@@ -180,6 +181,20 @@ std::string wiring_keys(const Device& device) {
     return row({"`pin`", "an analog input of the board", "required"});
   if (vm::drives_panel(driver_of(device)))
     return row({"`pin`", "an output of the board that can drive a panel or strip", "required"});
+  if (vm::drives_wheels(driver_of(device)))
+    return row({"`left`", "two outputs of the board: the left motor forward, backward",
+                "required"}) +
+           row({"`right`", "two outputs of the board: the right motor forward, backward",
+                "required"}) +
+           row({"`speed`", "of the robot with full power, above 0cm/s", "required"}) +
+           row({"`track`",
+                "the distance between the wheels, above 0cm and at most " +
+                    format_value(vm::kMostTrack, *device.actuator.to_unit),
+                "required"}) +
+           row({"`trim`",
+                fmt::format("`left`, `right`: each {}% to {}% of the power", kLeastTrim,
+                            vm::kFullTrim),
+                "100% for both"});
   if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, backward", "required"});
   else if (type->pin)

@@ -46,13 +46,13 @@ class Outputs:
     def pulses(self):
         """{pin: its pulse in us}, without the pins that are off."""
         if NAME == REFERENCE:
-            found = dict(enumerate(self._words(self._symbols["robosync_virtual_pwm"], PINS)))
+            found = dict(enumerate(self.words(self._symbols["robosync_virtual_pwm"], PINS)))
         else:
             self._read_log()
             found = {pin: self._written.get(place, 0) for pin, place in TIMERS[NAME].items()} if NAME in TIMERS else self._of_modules()
         return {pin: pulse for pin, pulse in found.items() if pulse}
 
-    def _words(self, address, count):
+    def words(self, address, count):
         """Words of the memory, even while the firmware runs."""
         said = self._board.qmp.command("human-monitor-command", **{"command-line": f"xp /{count}xw {address:#x}"})
         return [int(word, 16) for word in re.findall(r"0x([0-9a-f]{8})\b", said)]
@@ -72,8 +72,8 @@ class Outputs:
     def _of_modules(self):
         """A pin that was off gets its module again when periods of it have ended. QEMU's never do: the pulse for which it waits
         counts."""
-        values = self._words(self._symbols[SPACE + "values"], 4)
-        states = self._words(self._symbols[SPACE + "states"], len(RINGS))
+        values = self.words(self._symbols[SPACE + "values"], 4)
+        states = self.words(self._symbols[SPACE + "states"], len(RINGS))
         found = {}
         for (pin, (module, channel, chip)), state in zip(RINGS.items(), states):
             joined = self._written.get(("io", MODULES[module] + PIN_OF_CHANNEL + 4 * channel)) == chip

@@ -121,7 +121,7 @@ def wired_as_it_can(actuators):
     free = [pin for pin in OUTPUTS if pin not in taken]
     enables = {}
     for actuator in actuators:
-        allowed = AT_WILL if actuator.get("device") in ("motor", "pwm") else OUTPUTS
+        allowed = AT_WILL if actuator.get("device") in ("motor", "pwm", "differential_drive") else OUTPUTS
         pins = pins_of(actuator)
         found = [pin for pin in free if pin in allowed][:len(pins)]
         if "enable" in actuator:
@@ -136,10 +136,13 @@ def wired_as_it_can(actuators):
             become_virtual(actuator)
         else:
             free = [pin for pin in free if pin not in found]
-            actuator.update({"pin": str(found[0])} if "pin" in actuator else {"pins": found})
+            actuator.update({"left": found[:2], "right": found[2:]} if "left" in actuator else
+                            {"pin": str(found[0])} if "pin" in actuator else {"pins": found})
 
 
 def pins_of(actuator):
+    if "left" in actuator:
+        return [*actuator["left"], *actuator["right"]]
     return [actuator["pin"]] if "pin" in actuator else actuator.get("pins", [])
 
 

@@ -5,7 +5,7 @@ import sys
 
 from changes import Mutant, Suite, run
 
-TESTS = "[#guard_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
+TESTS = "[#guard_test],[#differential_drive_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
@@ -39,6 +39,16 @@ MUTANTS = (
     Mutant("no limit of the power of a motor", GUARD, "within(limits_[slot.limit], length)", "static_cast<std::uint16_t>(length)"),
     Mutant("a motor that turns round has both pins on", GUARD, "board_.pwm_write(slot.pin, 0);\n  exchange(slot);", "exchange(slot);"),
     Mutant("a motor that turns round begins at the power of before", GUARD, "  slot.pulse = 0;\n", ""),
+    Mutant("a halt lets the right wheel of a drive run on", GUARD, "slot.target = right_wheel_.target = 0;", "slot.target = 0;"),
+    Mutant("a halt takes a drive for one motor", GUARD, "  apart_ |= bit(actuator);\n  return true;", "  return true;"),
+    Mutant("who is halted may drive its wheels", GUARD, "if (!is_free(actuator) || !is_drive(actuator)) return;", "if (!is_drive(actuator)) return;"),
+    Mutant("what is no drive may drive wheels", GUARD, "if (!is_free(actuator) || !is_drive(actuator)) return;", "if (!is_free(actuator)) return;"),
+    Mutant("the next program leaves a right wheel on", GUARD, "    if (is_drive(actuator)) end(right_wheel_, next);\n", ""),
+    Mutant("a wheel that turns round has both pins on", GUARD, "second != wheel.second) change_pin(wheel, now);", "second != wheel.second) exchange(wheel);"),
+    Mutant("no limit of the power of a wheel", GUARD, "within(limits_[wheel.limit], second ? 0 - length : length)",
+           "static_cast<std::uint16_t>(second ? 0 - length : length)"),
+    Mutant("no limit of the rise of a wheel", GUARD, "rise == 0 ? wheel->target", "true ? wheel->target"),
+    Mutant("a drive is owned on pins that the board does not drive", GUARD, "if (!policy::can_drive(drive, parameters, board_.pins())) return false;", ""),
     Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n    if (is_on_panel", "    if (is_on_panel"),
     Mutant("a player is told twice at once", GUARD, "- slot.changed) < gap;", "- slot.changed) == 0xFFFF;"),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",

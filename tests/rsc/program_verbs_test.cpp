@@ -213,6 +213,18 @@ TEST_CASE("dump says both pins of a motor") {
              Contains("0 wheel: motor on pins 3 and 4, range -100 … 100"));
 }
 
+TEST_CASE("dump says the pins of a drive, its trims and its measures") {
+  const RobotFolder robot;
+  const std::string config = robot.write("drive.json", R"({"actuators": [
+    {"name": "base", "type": "PWM", "left": [3, 4], "right": [5, 6], "device": "differential_drive",
+     "speed": "40cm/s", "track": "12cm", "trim": {"right": "95%"}}]})");
+  const std::string program = robot.write("runs.rsl", "AT START\nDO SPIN base LEFT\nEND\n");
+  CHECK_THAT(
+      test::rsc({"dump", program, "--config", config}).out,
+      Contains("0 base: differential_drive on pins 3 and 4 (left, 100 %), 5 and 6 (right, 95 %), "
+               "400 with full power, track 120, usually 200, range"));
+}
+
 TEST_CASE("dump of a program shows each line above its instructions, optimised or not") {
   const RobotFolder robot;
   const std::string program = robot.write("counts.rsl", R"(REMEMBER count = 0

@@ -143,6 +143,28 @@ TEST_CASE("a command for lights has the picture that they show; a face without h
   CHECK_FALSE(run.at("actuators").at(2).at("bars").at(0).contains("picture"));
 }
 
+TEST_CASE("the way of a drive is its bar, which ends with the power of its motors") {
+  const Folder folder;
+  folder.write("robot.json", R"({"actuators": [
+    {"name": "base", "type": "PWM", "device": "differential_drive", "left": [3, 4], "right": [5, 6],
+     "speed": "40cm/s", "track": "12cm"}]})");
+  const std::string program = folder.write(
+      "robot.rsl",
+      "AT START DO\n  DRIVE base FORWARD 20cm AT 10cm/s\n  TURN base LEFT 90deg\n  WAIT 1s\nEND\n");
+  const json run = run_of_page(folder, program);
+  REQUIRE(run.at("actuators").size() == 1);
+  const json& base = run.at("actuators").at(0);
+  CHECK(base.at("name") == "base");
+  const json& bars = base.at("bars");
+  REQUIRE(bars.size() == 2);
+  CHECK(bars.at(0).at("text") == "DRIVE FORWARD BY 20cm AT 10cm/s");
+  CHECK(bars.at(0).at("to") == 2'000'000);
+  CHECK_FALSE(bars.at(0).contains("until"));
+  CHECK(bars.at(1).at("text") == "TURN LEFT BY 90deg");
+  CHECK(bars.at(1).at("from") == 2'000'000);
+  CHECK(bars.at(1).at("to") == 2'472'000);  // in the tick after its end
+}
+
 TEST_CASE("who was denied is told by whom, and what SAFETY did from when to when") {
   const Page page;
   REQUIRE(page.run_of.at("denied").size() == 1);

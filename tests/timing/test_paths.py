@@ -322,6 +322,8 @@ class ActuatorDrivers(unittest.TestCase):
     SERVO = {"type": "PWM", "pin": "3", "device": "servo", "range": ["0deg", "180deg"]}
     PWM = {"type": "PWM", "pin": "3", "device": "pwm", "on_release": "hold"}
     MOTOR = {"type": "PWM", "pins": [3, 4], "device": "motor", "on_release": "hold", "limits": {"SPEED": "98%"}}
+    DRIVE = {"type": "PWM", "left": [3, 4], "right": [5, 6], "speed": "41cm/s", "track": "12.3cm", "trim": {"right": "97%"},
+             "device": "differential_drive"}
     ELSEWHERE = {"lights", "tones", "ws2812_face", "ws2812_strip"}  # the reference board has none: tests/e2e/on_microbit.py
     CHIP = {"type": "I2C", "address": "0x4a", "channel": 3, "enable": 36, "device": "pca9685_servo"}
     DISPLAY = {"type": "I2C", "address": "0x3c", "device": "ssd1306"}
@@ -341,6 +343,9 @@ class ActuatorDrivers(unittest.TestCase):
         "motor": (MOTOR, ["RUN a0 TO 33%", "RUN a0 BACKWARD AT 33% FOR 50ms", "RUN a0 TO -97% OVER 150ms FOR 50ms",
                           "RUN a0 TO 97% OVER 250ms\nWAIT 70ms\nRUN a0 TO -97% OVER 250ms", "RUN a0 TO 97%\nWAIT 1ms\nRUN a0 TO -97%",
                           "RUN a0 TO 97% OVER 36000s\nWAIT 70ms\nRUN a0 TO -97% OVER 36000s"]),
+        "differential_drive": (DRIVE, ["DRIVE a0 FORWARD 1.3cm AT 17cm/s", "DRIVE a0 BACKWARD 150m OVER 36000s", "TURN a0 LEFT 7deg",
+                                       "TURN a0 RIGHT 1999deg OVER 777s", "SPIN a0 LEFT AT 7cm/s FOR 50ms", "SPIN a0 3 TIMES",
+                                       "DRIVE a0 FORWARD 150m\nWAIT 70ms\nTURN a0 LEFT 9deg OVER 50ms"]),
         "servo": (SERVO, ["MOVE a0 TO 33deg OVER 50ms", "MOVE a0 2 TIMES OVER 70ms", "MOVE a0 2 TIMES OVER 5273ms",
                           "MOVE a0 TO 178deg AT 66deg/s\nWAIT 200ms\nMOVE a0 TO 1deg AT 66deg/s",
                           "MOVE a0 TO 77.7deg OVER 36000s\nWAIT 77ms\nMOVE a0 TO 1.3deg OVER 36000s"]),
@@ -385,6 +390,24 @@ class ActuatorDrivers(unittest.TestCase):
                 for call, count in measured.items():
                     self.assertGreaterEqual(said[call], count, call)
                     self.assertLessEqual(said[call], LOOSEST * count + SLACK, call)
+
+    def test_a_halt_of_what_moves(self):
+        """The guard switches off more for a motor than for a virtual actuator, and most for a drive: a driver's release has room for that."""
+        config = paths.robot()
+        config["sensors"][0]["channels"]["c1"]["unit"] = "N"
+        rule = "SAFETY g\n  WHEN s c1 > 50N\n  DO\n    STOP a0\n  RESUME WHEN s c1 < 20N\nEND\n"
+        orders = [feed(10), feed(10, 1), wait(20), feed(20, 1), wait(20), feed(90), wait(20), feed(90, 1), wait(20)]
+
+        def halted(wiring, order):
+            return run(rule + behavior(order), orders, config | {"actuators": [{"name": "a0", **wiring}]}).feeds[-1]
+
+        least = halted({"type": "VIRTUAL"}, "MOVE a0 FOR 60s")
+        for driver, wiring, order in (("motor", self.MOTOR, "RUN a0 TO 50% FOR 60s"),
+                                      ("differential_drive", self.DRIVE, "DRIVE a0 FORWARD 99m AT 17cm/s"),
+                                      ("differential_drive", self.DRIVE, "TURN a0 LEFT 9999deg")):
+            more, said = halted(wiring, order) - least, paths.actuator_drivers()[driver]["release"] - DRIVER["release"]
+            print(f"\n  a halt of {order}: {more} more, said {said}")
+            self.assertGreaterEqual(said, more)
 
 
 class Kernel(unittest.TestCase):

@@ -43,6 +43,8 @@ const nlohmann::json& described(Object object) {
       return definitions.at("channel");
     case Object::actuator:
       return definitions.at("actuator");
+    case Object::trim:
+      return definitions.at("actuator").at("properties").at("trim");
     case Object::sound:
       return definitions.at("sound");
     case Object::limits:
@@ -219,9 +221,9 @@ TEST_CASE("the schema bounds a robot's name as the image does") {
 }
 
 TEST_CASE("the schema has exactly the reader's keys") {
-  for (const Object object :
-       {Object::robot, Object::sensor, Object::channel, Object::actuator, Object::sound,
-        Object::limits, Object::behavior, Object::scheduler, Object::safety, Object::algorithm}) {
+  for (const Object object : {Object::robot, Object::sensor, Object::channel, Object::actuator,
+                              Object::trim, Object::sound, Object::limits, Object::behavior,
+                              Object::scheduler, Object::safety, Object::algorithm}) {
     std::set<std::string> keys;
     for (const auto& [key, value] : described(object).at("properties").items())
       keys.insert(key);

@@ -1,0 +1,158 @@
+// Two motors that drive a robot, by timing: nothing measures how far it went. Its speed is proportional to the power, up to
+// its speed with full power; a wheel's way and speed give the time, and then both motors go off.
+//
+//   TO, BY          straight, at AT or the usual speed, or in OVER. Its position is the way since the program began, without turns
+//   BY of a play    turns by that angle: each wheel goes along an arc around the middle between them
+//   TIMES           turns round that often, or goes straight for that many seconds
+//   otherwise       for as long as FOR or OVER says, or for a second
+//
+// OVER is stretched if it would need more than the greatest speed. A turn to the right is positive.
+#include <algorithm>
+
+#include "runtime-m4/drivers/timed.hpp"
+#include "runtime-m4/drivers/way.hpp"
+#include "vm/drive.hpp"
+
+namespace robosync::drivers::differential_drive {
+namespace {
+
+constexpr kernel::Duration kFrameUs = 20'000;
+constexpr kernel::Duration kMicroseconds = 1'000'000;
+// 355 / 113 is pi, but for a ten-millionth.
+constexpr std::int64_t kPiAbove = 355, kPiBelow = 113;
+constexpr std::int64_t kWholeTurn = 360 * std::int64_t{vm::kScale};
+
+// What the wheels do: both backward if `back`, or for a turn the left one.
+struct Course {
+  vm::Value way = 0;  // as long as that of each wheel; negative if `back`
+  kernel::Duration length = 0;
+  vm::Value speed = 0;
+  bool back = false;
+};
+
+constexpr std::int64_t kFarthest = INT32_MAX;
+
+vm::Value bounded(std::int64_t amount) {
+  return static_cast<vm::Value>(std::clamp(amount, -kFarthest, kFarthest));
+}
+
+vm::Value most_of(const Device& device, const vm::DriveParameters& drive) {
+  return std::min(device.wiring.speed_limit, drive.speed);
+}
+
+// A way of the wheels at their speed, or in OVER.
+Course along(std::int64_t way, const Order& order, vm::Value speed, vm::Value most) {
+  Course course{.way = bounded(way), .speed = speed, .back = way < 0};
+  if (!order.has(vm::Param::over)) {
+    course.length = travel_time(0, course.way, speed);
+    return course;
+  }
+  const kernel::Duration over = duration_of(order.get(vm::Param::over, 0));
+  course.length = std::max(over, travel_time(0, course.way, most));
+  if (course.length == 0 || course.length == kernel::kForever) return course;
+  const auto size =
+      static_cast<kernel::Duration>(course.back ? -std::int64_t{course.way} : course.way);
+  const kernel::Duration needed = size * kMicroseconds / course.length;
+  course.speed = static_cast<vm::Value>(std::min(needed, static_cast<kernel::Duration>(most)));
+  return course;
+}
+
+Course for_a_time(kernel::Duration length, bool back, vm::Value speed) {
+  const std::int64_t way = static_cast<std::int64_t>(length / 1000) * speed / 1000;
+  return {.way = bounded(back ? -way : way), .length = length, .speed = speed, .back = back};
+}
+
+kernel::Duration time_of(const Order& order) {
+  if (order.has(vm::Param::for_)) return duration_of(order.get(vm::Param::for_, 0));
+  if (order.has(vm::Param::over)) return duration_of(order.get(vm::Param::over, 0));
+  return duration_of(order.get(vm::Param::times, vm::kScale));
+}
+
+std::int64_t arc_of(std::int64_t angle, const vm::DriveParameters& drive) {
+  return std::int64_t{bounded(angle)} * drive.track * kPiAbove / (kPiBelow * kWholeTurn);
+}
+
+Course course_of(const Device& device, const Order& order, const vm::DriveParameters& drive,
+                 vm::Value position) {
+  const vm::Value most = most_of(device, drive);
+  const vm::Value speed = std::min(order.get(vm::Param::at, drive.usual), most);
+  const bool back = order.get(vm::Param::direction, 1) < 0;
+  const bool turns = order.action == vm::Action::play;
+  std::int64_t amount = 0;
+  if (order.has(vm::Param::by)) {
+    amount = order.get(vm::Param::by, 0);
+  } else if (turns && order.has(vm::Param::times)) {
+    amount = order.get(vm::Param::times, 0) / vm::kScale * kWholeTurn;
+  } else if (!turns && order.has(vm::Param::to)) {
+    return along(std::int64_t{order.get(vm::Param::to, 0)} - position, order, speed, most);
+  } else {
+    return for_a_time(time_of(order), back, speed);
+  }
+  if (turns) amount = arc_of(amount, drive);
+  return along(back ? -amount : amount, order, speed, most);
+}
+
+// Of a motor without trim.
+std::uint32_t pulse_of(vm::Value speed, const vm::DriveParameters& drive) {
+  return static_cast<std::uint32_t>(static_cast<kernel::Duration>(speed) * kFrameUs /
+                                    static_cast<kernel::Duration>(drive.speed));
+}
+
+std::int32_t trimmed(std::uint32_t pulse, vm::Side side, const vm::DriveParameters& drive) {
+  return static_cast<std::int32_t>(pulse * drive.trim[static_cast<std::size_t>(side)] /
+                                   std::uint32_t{vm::kFullTrim});
+}
+
+void stop(const Device& device, kernel::Time now) {
+  way::stop(device, vm::Release::hold, now);
+  device.drive_wheels(0, 0, now);
+}
+
+// The position stays within the range, which the robot may leave.
+void go(const Device& device, const Course& course, bool turns, kernel::Time now) {
+  const vm::Value from = device.state.motion.at(now);
+  const std::int64_t way = turns ? 0 : course.way;
+  const std::int64_t to =
+      std::clamp<std::int64_t>(from + way, device.wiring.min, device.wiring.max);
+  device.state.motion = {
+      .from = from, .to = static_cast<vm::Value>(to), .begin = now, .length = course.length};
+  device.state.until = now + course.length;
+}
+
+}  // namespace
+
+kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
+  const vm::Value* const parameters = device.outputs.drive_parameters();
+  if (parameters == nullptr) return kDone;
+  if (!device.state.placed) way::stand(device, 0, now);
+  way::stop(device, vm::Release::hold, now);
+  const vm::DriveParameters drive = vm::drive_of(parameters);
+  Course course;
+  if (order.action != vm::Action::stop)
+    course = course_of(device, order, drive, device.state.motion.at(now));
+  if (course.length == 0 || course.length == kernel::kForever || course.speed == 0) {
+    stop(device, now);
+    return kDone;
+  }
+  const bool turns = order.action == vm::Action::play;
+  const std::uint32_t pulse = pulse_of(course.speed, drive);
+  const std::int32_t left = trimmed(pulse, vm::Side::left, drive);
+  const std::int32_t right = trimmed(pulse, vm::Side::right, drive);
+  const bool right_back = course.back != turns;
+  go(device, course, turns, now);
+  device.drive_wheels(course.back ? -left : left, right_back ? -right : right, now);
+  return device.state.until;
+}
+
+kernel::Time advance(const Device& device, kernel::Time now) {
+  if (now < device.state.until) return device.state.until;
+  stop(device, now);
+  return kDone;
+}
+
+// Whatever `how`: nobody would end what it does.
+void release(const Device& device, vm::Release, kernel::Time now) {
+  stop(device, now);
+}
+
+}  // namespace robosync::drivers::differential_drive
