@@ -108,20 +108,40 @@ void read_sounds(const json::Value& value, const Device& device, ActuatorConfig&
   }
 }
 
-void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
-  const Fields fields(value, Object::limits, diagnostics);
-  const auto* speed = fields.find("SPEED");
-  if (speed == nullptr) return;
-  actuator.limit_span = speed->span;
+void read_speed_limit(const json::Value& speed, ActuatorConfig& actuator,
+                      Diagnostics& diagnostics) {
+  actuator.limit_span = speed.span;
   if (actuator.at_unit == nullptr) {
-    diagnostics.report(Code::E0205, "this device has no speed to limit").label(speed->span);
+    diagnostics.report(Code::E0205, "this device has no speed to limit").label(speed.span);
     return;
   }
-  const auto limit = read_quantity(*speed, *actuator.at_unit, diagnostics);
+  const auto limit = read_quantity(speed, *actuator.at_unit, diagnostics);
   if (limit && *limit <= 0)
-    diagnostics.report(Code::E0205, "a speed must be above 0").label(speed->span);
+    diagnostics.report(Code::E0205, "a speed must be above 0").label(speed.span);
   else if (limit)
     actuator.speed_limit = *limit;
+}
+
+void read_acceleration_limit(const json::Value& acceleration, ActuatorConfig& actuator,
+                             Diagnostics& diagnostics) {
+  actuator.acceleration_span = acceleration.span;
+  if (actuator.to_unit == nullptr || actuator.at_unit == nullptr || actuator.usual_speed == 0) {
+    diagnostics
+        .report(Code::E0205,
+                "this device does not move at a speed, so it has no ACCELERATION to limit")
+        .label(acceleration.span)
+        .helps("servos, a `joint` and a `drive` have one");
+    return;
+  }
+  actuator.acceleration =
+      read_acceleration(acceleration, *actuator.at_unit, diagnostics).value_or(0);
+}
+
+void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  const Fields fields(value, Object::limits, diagnostics);
+  if (const auto* speed = fields.find("SPEED")) read_speed_limit(*speed, actuator, diagnostics);
+  if (const auto* acceleration = fields.find("ACCELERATION"))
+    read_acceleration_limit(*acceleration, actuator, diagnostics);
 }
 
 // A program takes as long as it would with the real actuator.
