@@ -59,7 +59,8 @@ std::int64_t velocity(const ActuatorState& state, kernel::Time now) {
 trapezoid::Profile plan(const Device& device, std::uint32_t way, std::int64_t pace) {
   const std::uint32_t acceleration = device.state.acceleration;
   const vm::Value speed = pace > 0 ? static_cast<vm::Value>(pace) : device.wiring.speed_limit;
-  trapezoid::Profile profile = trapezoid::shortest(way, std::max(speed, 1), acceleration);
+  trapezoid::Profile profile =
+      trapezoid::shortest(way, std::max(speed, vm::Value{1}), acceleration);
   const auto length = static_cast<std::uint64_t>(pace < 0 ? -pace : 0);
   if (length > profile.length) return trapezoid::stretched(way, length, acceleration);
   profile.length = std::max(profile.length, kFrameMs);
@@ -136,7 +137,8 @@ void begin_leg(const Device& device, vm::Value to, kernel::Duration length, kern
   const bool is_timed = order.has(vm::Param::over);
   if (!is_timed && speed <= 0) return brake(device, now);
   const vm::Value target = target_of(device, order, now);
-  std::int64_t pace = is_timed ? -std::int64_t{std::max(order.get(vm::Param::over, 0), 0)} : speed;
+  std::int64_t pace =
+      is_timed ? -std::int64_t{std::max(order.get(vm::Param::over, 0), vm::Value{0})} : speed;
   const std::int64_t present = velocity(device.state, now);
   device.state.legs = 0;
   if (present == 0) {
