@@ -36,14 +36,6 @@ std::uint64_t passed(const ActuatorState& state, kernel::Time now) {
   return now <= state.motion.begin ? 0 : (now - state.motion.begin) / 1000;
 }
 
-[[gnu::noinline]] vm::Value position_on_ramps(const ActuatorState& state, kernel::Time now) {
-  const Motion& motion = state.motion;
-  if (now >= motion.end()) return motion.to;
-  const std::int64_t way =
-      trapezoid::covered(distance(motion.from, motion.to), profile_of(state), passed(state, now));
-  return static_cast<vm::Value>(motion.from + (motion.to > motion.from ? way : -way));
-}
-
 // Thousandths per second, below 0 if it goes backwards.
 std::int64_t velocity(const ActuatorState& state, kernel::Time now) {
   const Motion& motion = state.motion;
@@ -119,8 +111,8 @@ void slow_down(const Device& device, std::int64_t velocity, kernel::Time now) {
           now - half * 1000);
 }
 
-void begin_leg(const Device& device, vm::Value to, kernel::Duration length, kernel::Time now) {
-  const vm::Value from = device.state.motion.at(now);
+void begin_leg(const Device& device, vm::Value from, vm::Value to, kernel::Duration length,
+               kernel::Time now) {
   device.state.motion = {
       .from = from, .to = to, .begin = now, .length = std::max<kernel::Duration>(length, kFrame)};
 }
@@ -166,7 +158,7 @@ bool start_move(const Device& device, const Order& order, vm::Value speed, kerne
   }
   if (length == kernel::kForever) return false;
   device.state.legs = 0;
-  begin_leg(device, target, length, now);
+  begin_leg(device, position, target, length, now);
   return true;
 }
 
@@ -182,28 +174,29 @@ vm::Value leg_target(const Device& device) {
   }
 }
 
+std::int64_t way_of_gesture(const Device& device) {
+  return 2 * (std::int64_t{device.wiring.max} - device.wiring.min);
+}
+
 // So that all the legs together take `time` milliseconds: each takes as long as its way at the speed, and a ramp.
-std::uint64_t speed_with_ramps(const Device& device, std::uint64_t way, std::uint64_t time) {
+[[gnu::noinline]] std::int64_t speed_with_ramps(const Device& device, std::uint64_t time) {
   const bool at_end =
       device.state.home == device.wiring.min || device.state.home == device.wiring.max;
   const std::uint64_t legs = at_end ? kLegsOfGesture - 1 : kLegsOfGesture;
-  const std::uint64_t least =
-      4 * legs * trapezoid::rounded_up(way * vm::kScale, device.state.acceleration);
+  const std::uint64_t way = static_cast<std::uint64_t>(way_of_gesture(device)) * vm::kScale;
+  const std::uint64_t least = 4 * legs * trapezoid::rounded_up(way, device.state.acceleration);
   if (time * time < least) return vm::kValueMax;
   const std::uint64_t ramps = (time - trapezoid::root(time * time - least)) / 2;
-  return way * vm::kScale / (time - ramps);
+  return static_cast<std::int64_t>(way / (time - ramps));
 }
 
 // With OVER the whole gesture takes that long; its way is twice the range.
 vm::Value gesture_speed(const Device& device, const Order& order, vm::Value speed) {
   const auto over = static_cast<std::int64_t>(duration_of(order.get(vm::Param::over, 0)));
   if (over == 0) return speed;
-  const std::int64_t way = 2 * (std::int64_t{device.wiring.max} - device.wiring.min);
   const std::int64_t needed =
-      has_ramps(device)
-          ? static_cast<std::int64_t>(speed_with_ramps(device, static_cast<std::uint64_t>(way),
-                                                       static_cast<std::uint64_t>(over / 1000)))
-          : way * 1'000'000 / over;
+      has_ramps(device) ? speed_with_ramps(device, static_cast<std::uint64_t>(over / 1000))
+                        : way_of_gesture(device) * 1'000'000 / over;
   return static_cast<vm::Value>(std::clamp<std::int64_t>(needed, 1, device.wiring.speed_limit));
 }
 
@@ -211,7 +204,7 @@ bool start_gesture(const Device& device, const Order& order, vm::Value speed, ke
   if (speed <= 0 || device.wiring.min == device.wiring.max) return brake(device, now);
   const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
   const vm::Value bounded = std::clamp(times, vm::Value{1}, kMostGestures);
-  const bool brakes = brake(device, now);
+  const bool brakes = has_ramps(device) && brake(device, now);
   device.state.home = position(device, now);
   device.state.speed = gesture_speed(device, order, speed);
   device.state.legs = static_cast<std::uint16_t>(bounded * kLegsOfGesture);
@@ -220,9 +213,12 @@ bool start_gesture(const Device& device, const Order& order, vm::Value speed, ke
 
 }  // namespace
 
-vm::Value position(const Device& device, kernel::Time now) {
-  const ActuatorState& state = device.state;
-  return state.ramp == 0 ? state.motion.at(now) : position_on_ramps(state, now);
+vm::Value position_on_ramps(const ActuatorState& state, kernel::Time now) {
+  const Motion& motion = state.motion;
+  if (now >= motion.end()) return motion.to;
+  const std::int64_t way =
+      trapezoid::covered(distance(motion.from, motion.to), profile_of(state), passed(state, now));
+  return static_cast<vm::Value>(motion.from + (motion.to > motion.from ? way : -way));
 }
 
 void stand(const Device& device, vm::Value position, kernel::Time now) {
@@ -246,7 +242,7 @@ void stop(const Device& device, vm::Release how, kernel::Time now) {
   device.state.speed = speed;
 }
 
-bool brake(const Device& device, kernel::Time now) {
+[[gnu::noinline]] bool brake(const Device& device, kernel::Time now) {
   if (!has_ramps(device)) return false;
   const std::int64_t present = velocity(device.state, now);
   if (present == 0) return false;
@@ -285,7 +281,7 @@ bool next_leg(const Device& device, kernel::Time now) {
   if (has_ramps(device))
     begin_ramps(device, target, device.state.speed, now);
   else
-    begin_leg(device, target, travel_time(here, target, device.state.speed), now);
+    begin_leg(device, here, target, travel_time(here, target, device.state.speed), now);
   return true;
 }
 

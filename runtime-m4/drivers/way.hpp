@@ -24,8 +24,13 @@ inline constexpr kernel::Duration kFrame = kernel::milliseconds(policy::kSetpoin
 // From now on it stands at `position`.
 void stand(const Device& device, vm::Value position, kernel::Time now);
 void stand_at_rest(const Device& device, kernel::Time now);
-// Where it is now.
-vm::Value position(const Device& device, kernel::Time now);
+// Where it is now: on a ramp, or …
+vm::Value position_on_ramps(const ActuatorState& state, kernel::Time now);
+// … in any case. Inlined: without ramps it costs a branch.
+[[gnu::always_inline]] inline vm::Value position(const Device& device, kernel::Time now) {
+  const ActuatorState& state = device.state;
+  return state.ramp == 0 ? state.motion.at(now) : position_on_ramps(state, now);
+}
 // Stays where it is, or goes to rest, at once.
 void stop(const Device& device, vm::Release how, kernel::Time now);
 // Begins to slow down to a standstill. False: it is done immediately, because it has no limit of acceleration or does not move.
