@@ -170,7 +170,7 @@ private:
   // may be, lets the next one begin in the same step.
   void command(std::size_t a, bool stops, Instructions turns) {
     const vm::Actuator& actuator = image_.actuators[a];
-    const policy::ActuatorCosts driver = policy::actuator_costs(actuator.driver);
+    const policy::ActuatorCosts driver = policy::actuator_costs(image_, a);
     const bool stands = actuator.speed_limit <= 0 || actuator.min == actuator.max;
     const Instructions started = Instructions{costs::kCommand} + driver.start;
     if (stops || driver.at_once || !takes_time_ || stands) {
@@ -188,7 +188,7 @@ private:
     constexpr Instructions kMost = vm::kMaxResponseOutput;
     constexpr Instructions kEach = costs::kCommand + costs::kDone;
     for (std::size_t a = 0; a < work_.by_actuator.size(); ++a) {
-      const Instructions start = policy::actuator_costs(image_.actuators[a].driver).start;
+      const Instructions start = policy::actuator_costs(image_, a).start;
       work_.by_actuator[a] = std::min(work_.by_actuator[a], kMost * (kEach + start));
     }
     work_.other = std::min(work_.other, kMost * kEach);

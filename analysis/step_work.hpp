@@ -87,7 +87,7 @@ private:
   [[nodiscard]] std::uint32_t every_ms(unsigned rule) const;
   [[nodiscard]] bool wants_on(unsigned rule) const;
   [[nodiscard]] policy::ActuatorCosts driver_costs(unsigned actuator) const {
-    return policy::actuator_costs(image_.actuators[actuator].driver);
+    return policy::actuator_costs(image_, actuator);
   }
   [[nodiscard]] bool may_lose(unsigned rule) const;
 

@@ -466,7 +466,7 @@ private:
     // Its next setpoint; or its command is done, and the next one in its queue begins.
     for (unsigned a = 0; a < image_.actuators.size(); ++a) {
       if ((commanded_ >> a & 1) == 0) continue;
-      const policy::ActuatorCosts driver = policy::actuator_costs(image_.actuators[a].driver);
+      const policy::ActuatorCosts driver = policy::actuator_costs(image_, a);
       set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
                                     instructions_in_ms(policy::kSetpointPeriodMs),
                                     costs::kService + driver.advance + driver.start});

@@ -159,6 +159,11 @@ constexpr bool is_by_echo(DriverId driver) {
 constexpr bool is_analog(DriverId driver) {
   return bus_of(driver) == Bus::adc;
 }
+// It has a position and a speed, also if a command says none: it can have a limit of acceleration.
+constexpr bool moves_at_a_speed(const Actuator& actuator) {
+  if (actuator.driver == DriverId::virtual_motion) return actuator.pin != 0;
+  return actuator.driver == DriverId::servo || actuator.driver == DriverId::pca9685_servo;
+}
 // The microphone of the board, which has at most one.
 constexpr bool is_microphone(DriverId driver) {
   return bus_of(driver) == Bus::sound;

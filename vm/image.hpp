@@ -162,12 +162,19 @@ struct ImageHeader {
 };
 static_assert(sizeof(ImageHeader) == 68);
 
-// The robot it is for, at most one. Without this record it is for any robot with that board.
-struct Robot {
-  std::uint16_t name;
-  std::uint16_t reserved;
+enum class TraitKind : std::uint8_t {
+  name,  // `value`: the name of the robot that the image is for, in the strings; without it, any with that board
+  acceleration,  // `value`: the limit of an actuator, in whole units per second squared
+  count_
 };
-static_assert(sizeof(Robot) == 4);
+
+// What few robots have, so that the others pay nothing for it: the name first, then accelerations in the order of their actuators.
+struct Trait {
+  std::uint16_t value;
+  std::uint8_t actuator;  // of an acceleration; else 0
+  TraitKind kind;
+};
+static_assert(sizeof(Trait) == 4);
 
 // For an algorithm, `bus` is the number of its module in the firmware, `address` the index of its
 // parameters in the constants, and `first_input` the first channel that it reads, which belongs to an
@@ -374,7 +381,14 @@ struct Image {
   std::string_view string(std::uint16_t offset) const;
   // The name of the robot that it is for; empty: any.
   [[nodiscard]] std::string_view robot_name() const {
-    return robots.empty() ? std::string_view() : string(robots.front().name);
+    const bool has_name = !traits.empty() && traits.front().kind == TraitKind::name;
+    return has_name ? string(traits.front().value) : std::string_view();
+  }
+  // In whole units per second squared; 0: no limit.
+  [[nodiscard]] constexpr std::uint16_t acceleration_of(std::size_t actuator) const {
+    for (const Trait& trait : traits)
+      if (trait.kind == TraitKind::acceleration && trait.actuator == actuator) return trait.value;
+    return 0;
   }
   // Are there SAFETY rules? If so, kSafetyBehavior holds them.
   [[nodiscard]] bool has_safety() const {

@@ -39,7 +39,7 @@ Refusal check_header(std::span<const std::byte> bytes, const Limits& limits, Ima
   constexpr std::size_t kCovered = offsetof(ImageHeader, total_length);
   if (crc32(bytes.subspan(kCovered)) != header.crc32) return Refusal::bad_crc;
   if (header.opcode_set != kOpcodeSet) return Refusal::wrong_opcodes;
-  if (header.adaptations > 1 || header.robots > 1) return Refusal::bad_value;
+  if (header.adaptations > 1) return Refusal::bad_value;
   if (are_too_many(header, limits)) return Refusal::too_many;
   return header.step_cost > limits.step_cost ? Refusal::too_costly : Refusal::none;
 }

@@ -521,9 +521,21 @@ Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
                                          (reserved[0] | reserved[1] | reserved[2]) == 0);
 }
 
-Refusal check_robot(Walk& walk, const Robot& robot, std::size_t) {
-  const std::size_t length = walk.image.string(robot.name).size();
-  return good_or(Refusal::bad_value, length <= kMaxRobotName && robot.reserved == 0);
+// A name comes first, and each actuator has at most one acceleration.
+Refusal check_trait(Walk& walk, const Trait& trait, std::size_t index) {
+  const Image& image = walk.image;
+  if (trait.kind == TraitKind::name) {
+    if (!is_string(walk, trait.value)) return Refusal::bad_string;
+    const std::size_t length = image.string(trait.value).size();
+    return good_or(Refusal::bad_value,
+                   index == 0 && length <= kMaxRobotName && trait.actuator == 0);
+  }
+  if (trait.kind != TraitKind::acceleration) return Refusal::bad_value;
+  if (trait.actuator >= image.actuators.size()) return Refusal::bad_index;
+  const bool in_order = index == 0 || image.traits[index - 1].kind == TraitKind::name ||
+                        image.traits[index - 1].actuator < trait.actuator;
+  return good_or(Refusal::bad_value,
+                 in_order && trait.value > 0 && moves_at_a_speed(image.actuators[trait.actuator]));
 }
 
 // The tracks of the motions follow each other without gaps, and so do the keys of the tracks. Tracks

@@ -122,7 +122,7 @@ vm::Image Emitter::sections() const {
   image.behaviors = rules_.behaviors;
   image.modifiers = rules_.modifiers;
   image.adaptations = records_.adaptations;
-  image.robots = records_.robots;
+  image.traits = records_.traits;
   image.motions = records_.motions;
   image.tracks = records_.tracks;
   image.keys = records_.keys;

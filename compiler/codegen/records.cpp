@@ -44,7 +44,7 @@ public:
     if (robot_.scheduler && robot_.scheduler->alpha > 0)
       records_.adaptations.push_back(
           {robot_.scheduler->alpha, robot_.scheduler->window_ms, robot_.scheduler->cap, {}});
-    if (!robot_.name.empty()) records_.robots.push_back({strings_.offset(robot_.name), 0});
+    traits();
     return std::move(records_);
   }
 
@@ -56,6 +56,7 @@ private:
   void actuator(std::size_t place);
   void variable(const ir::Variable& variable);
   void check(const ir::Check& check);
+  void traits();
   void motion_group(const ir::Motion& motion);
   void motion(const ir::Motion& motion);
 
@@ -185,6 +186,14 @@ void RecordMaker::actuator(std::size_t place) {
     record.pin = config.usual_speed;
   }
   records_.actuators.push_back(record);
+}
+
+void RecordMaker::traits() {
+  if (!robot_.name.empty())
+    records_.traits.push_back({strings_.offset(robot_.name), 0, vm::TraitKind::name});
+  for (const auto& [place, number] : tables_.actuators())
+    if (const std::uint16_t acceleration = robot_.actuators[place].acceleration; acceleration != 0)
+      records_.traits.push_back({acceleration, number, vm::TraitKind::acceleration});
 }
 
 void RecordMaker::variable(const ir::Variable& variable) {

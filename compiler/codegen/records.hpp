@@ -19,7 +19,7 @@ struct Records {
   std::vector<vm::Check> checks;
   std::vector<vm::Band> bands;
   std::vector<vm::Adaptation> adaptations;
-  std::vector<vm::Robot> robots;
+  std::vector<vm::Trait> traits;
   std::vector<vm::Motion> motions;
   std::vector<vm::Track> tracks;
   std::vector<vm::Key> keys;

@@ -108,20 +108,18 @@ void read_sounds(const json::Value& value, const Device& device, ActuatorConfig&
   }
 }
 
-void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
-  const Fields fields(value, Object::limits, diagnostics);
-  const auto* speed = fields.find("SPEED");
-  if (speed == nullptr) return;
+void read_speed_limit(const json::Value& speed, ActuatorConfig& actuator,
+                      Diagnostics& diagnostics) {
   if (actuator.at_unit == nullptr) {
-    diagnostics.report(Code::E0205, "this device has no speed to limit").label(speed->span);
+    diagnostics.report(Code::E0205, "this device has no speed to limit").label(speed.span);
     return;
   }
-  const auto limit = read_quantity(*speed, *actuator.at_unit, diagnostics);
+  const auto limit = read_quantity(speed, *actuator.at_unit, diagnostics);
   if (limit && *limit <= 0)
-    diagnostics.report(Code::E0205, "a speed must be above 0").label(speed->span);
+    diagnostics.report(Code::E0205, "a speed must be above 0").label(speed.span);
   else if (limit && *limit < actuator.speed_limit) {
     actuator.speed_limit = *limit;
-    actuator.limit_span = speed->span;
+    actuator.limit_span = speed.span;
   }
 }
 
@@ -130,6 +128,30 @@ void report_keys_of_drives(const Fields& fields, Diagnostics& diagnostics) {
     if (const auto* value = fields.find(key))
       diagnostics.report(Code::E0205, "only a `differential_drive` has `" + std::string(key) + "`")
           .label(value->span);
+}
+
+void read_acceleration_limit(const json::Value& acceleration, ActuatorConfig& actuator,
+                             Diagnostics& diagnostics) {
+  actuator.acceleration_span = acceleration.span;
+  const bool moves = actuator.to_unit != nullptr && actuator.at_unit != nullptr &&
+                     actuator.usual_speed != 0 && !vm::drives_wheels(actuator.driver);
+  if (!moves) {
+    diagnostics
+        .report(Code::E0205,
+                "this device does not move at a speed, so it has no ACCELERATION to limit")
+        .label(acceleration.span)
+        .helps("servos, a `joint` and a `drive` have one");
+    return;
+  }
+  actuator.acceleration =
+      read_acceleration(acceleration, *actuator.at_unit, diagnostics).value_or(0);
+}
+
+void read_limits(const json::Value& value, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  const Fields fields(value, Object::limits, diagnostics);
+  if (const auto* speed = fields.find("SPEED")) read_speed_limit(*speed, actuator, diagnostics);
+  if (const auto* acceleration = fields.find("ACCELERATION"))
+    read_acceleration_limit(*acceleration, actuator, diagnostics);
 }
 
 // A program takes as long as it would with the real actuator.

@@ -137,6 +137,8 @@ struct ActuatorConfig {
   Span range_span;
   vm::Value speed_limit = vm::kValueMax;
   Span limit_span;
+  std::uint16_t acceleration = 0;  // its limit, as in the image; 0: none
+  Span acceleration_span;
   std::uint16_t usual_speed =
       0;                // of a virtual one, in whole units a second; 0: the command says how long
   bool sweeps = false;  // … without a target, across its range and back

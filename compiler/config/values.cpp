@@ -201,6 +201,26 @@ std::optional<vm::Value> read_difference(const json::Value& value, const Unit& u
   return value_of(value, measured->number, difference, diagnostics);
 }
 
+std::optional<std::uint16_t> read_acceleration(const json::Value& value, const Unit& speed,
+                                               Diagnostics& diagnostics) {
+  constexpr std::string_view kEnd = "/s2";
+  json::Value in_a_second = value;
+  if (value.kind == json::Kind::string && value.text.ends_with(kEnd))
+    in_a_second.text.pop_back();
+  else if (value.kind == json::Kind::string && !split(value.text).unit.empty())
+    in_a_second.kind = json::Kind::null;
+  Diagnostics said_below;
+  const std::int64_t amount = read_quantity(in_a_second, speed, said_below).value_or(0);
+  const std::int64_t whole = (amount + vm::kScale / 2) / vm::kScale;
+  if (whole >= 1 && whole <= UINT16_MAX) return static_cast<std::uint16_t>(whole);
+  diagnostics
+      .report(Code::E0205, "this must be an acceleration from " + format_acceleration(1, speed) +
+                               " to " + format_acceleration(UINT16_MAX, speed))
+      .label(value.span)
+      .helps("write it like \"" + format_acceleration(400, speed) + "\"");
+  return std::nullopt;
+}
+
 std::optional<Range> read_range(const json::Value& value, const Unit& unit,
                                 Diagnostics& diagnostics) {
   if (!expect_kind(value, json::Kind::array, diagnostics, "\"range\": [0, 10]"))

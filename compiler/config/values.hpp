@@ -31,6 +31,11 @@ namespace robosync::compiler {
 [[nodiscard]] std::optional<vm::Value> read_difference(const json::Value& value, const Unit& unit,
                                                        Diagnostics& diagnostics);
 
+// 400, "400deg/s2": a change of `speed`, which is a unit of speed, in a second. In whole canonical units, as in the image.
+[[nodiscard]] std::optional<std::uint16_t> read_acceleration(const json::Value& value,
+                                                             const Unit& speed,
+                                                             Diagnostics& diagnostics);
+
 struct Range {
   vm::Value low = vm::kValueMin;
   vm::Value high = vm::kValueMax;

@@ -57,6 +57,9 @@ std::string about(const ActuatorConfig& actuator) {
   if (actuator.speed_limit != vm::kValueMax && actuator.at_unit != nullptr)
     text += fmt::format("\nNever faster than {}.",
                         format_value(actuator.speed_limit, *actuator.at_unit));
+  if (actuator.acceleration != 0)
+    text += fmt::format("\nSpeeds up and slows down by no more than {}.",
+                        format_acceleration(actuator.acceleration, *actuator.at_unit));
   return text;
 }
 

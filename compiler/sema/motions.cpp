@@ -181,6 +181,18 @@ bool is_late(const vm::Key& from, const vm::Key& to, std::int64_t limit) {
   return way * vm::kScale > (std::int64_t{to.time} - from.time) * limit;
 }
 
+// It speeds up from a standstill, and slows down to one, in `time` milliseconds.
+bool is_late(const vm::Key& from, const vm::Key& to, std::int64_t time,
+             const ActuatorConfig& actuator) {
+  if (actuator.acceleration == 0) return false;
+  const std::int64_t way = std::abs(std::int64_t{to.to} - from.to);
+  const std::int64_t acceleration =
+      actuator.acceleration;  // in thousandths, of the speed in a millisecond
+  const std::int64_t fastest =
+      std::min<std::int64_t>(actuator.speed_limit, acceleration * time / 2);
+  return way * vm::kScale > fastest * time - fastest * fastest / acceleration;
+}
+
 }  // namespace
 
 bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track) {
@@ -195,6 +207,9 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& trac
   const vm::Key made{time, number->code.constant};
   if (!track.keys.empty() && is_late(track.keys.back(), made, actuator.speed_limit))
     report_late(actuator, "here late", key.span);
+  else if (!track.keys.empty() &&
+           is_late(track.keys.back(), made, made.time - track.keys.back().time, actuator))
+    report_slow(actuator, "here late", key.span);
   track.keys.push_back(made);
   return true;
 }
@@ -210,6 +225,16 @@ void Motions::report_late(const ActuatorConfig& actuator, const std::string& whe
       .label(actuator.limit_span, "the limit", false);
 }
 
+void Motions::report_slow(const ActuatorConfig& actuator, const std::string& where, Span span) {
+  const Unit& unit = param_unit(actuator, vm::Param::at);
+  diagnostics_
+      .report(Code::N0004, actuator.name.shown() + " arrives " + where +
+                               ": it stops at each row, and speeds up by no more than " +
+                               format_acceleration(actuator.acceleration, unit))
+      .label(span)
+      .label(actuator.acceleration_span, "the limit", false);
+}
+
 void Motions::check_pace(std::size_t place, vm::Value pace, Span span) {
   constexpr std::int64_t kAsWritten = std::int64_t{100} * vm::kScale;
   if (pace <= kAsWritten) return;
@@ -221,6 +246,13 @@ void Motions::check_pace(std::size_t place, vm::Value pace, Span span) {
     };
     if (std::ranges::adjacent_find(track.keys, late) != track.keys.end())
       return report_late(actuator, "late at this pace", span);
+    const auto slow = [&](const vm::Key& from, const vm::Key& to) {
+      const std::int64_t time = to.time - from.time;
+      return is_late(from, to, time * kAsWritten / pace, actuator) &&
+             !is_late(from, to, time, actuator) && !is_late(from, to, actuator.speed_limit);
+    };
+    if (std::ranges::adjacent_find(track.keys, slow) != track.keys.end())
+      return report_slow(actuator, "late at this pace", span);
   }
 }
 

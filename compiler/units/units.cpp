@@ -247,6 +247,10 @@ std::string format_value(std::int64_t value, const Unit& unit) {
   return text + std::string(unit.spelling);
 }
 
+std::string format_acceleration(std::int64_t whole, const Unit& speed) {
+  return format_value(whole * vm::kScale, speed) + "2";
+}
+
 std::string written(Decimal number) {
   const bool negative = number.mantissa < 0;
   std::string digits = std::to_string(number.mantissa).substr(negative ? 1 : 0);

@@ -46,6 +46,9 @@ struct Decimal {
 // The value in `unit`, with as few decimals as express it to a thousandth, or at all (F): "2.5cm", "-3F".
 [[nodiscard]] std::string format_value(std::int64_t value, const Unit& unit);
 
+// An acceleration, in whole canonical units, as a change of a speed in a second: "400deg/s2".
+[[nodiscard]] std::string format_acceleration(std::int64_t whole, const Unit& speed);
+
 // The decimal number as text: "-0.5".
 [[nodiscard]] std::string written(Decimal number);
 

@@ -130,6 +130,11 @@ std::string limit_of(const vm::Actuator& actuator) {
          (actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit));
 }
 
+std::string acceleration_text(const vm::Image& image, std::size_t actuator) {
+  const std::uint16_t most = image.acceleration_of(actuator);
+  return most == 0 ? std::string() : fmt::format(", acceleration limit {}", most);
+}
+
 std::string actuators(const vm::Image& image) {
   std::string text = "\nactuators\n";
   for (std::size_t i = 0; i < image.actuators.size(); ++i) {
@@ -137,8 +142,9 @@ std::string actuators(const vm::Image& image) {
     text += fmt::format("  {} {}: {} on {}, range {} … {}, {}, release {}, safe {}; {}\n", i,
                         image.string(actuator.name), driver_name(actuator.driver),
                         place_of(image, actuator), number(actuator.min), number(actuator.max),
-                        limit_of(actuator), word_of(kReleases, actuator.on_release),
-                        word_of(kReleases, actuator.safe), verb_names(image, actuator.verbs));
+                        limit_of(actuator) + acceleration_text(image, i),
+                        word_of(kReleases, actuator.on_release), word_of(kReleases, actuator.safe),
+                        verb_names(image, actuator.verbs));
   }
   for (const vm::Group& group : image.groups) {
     text += fmt::format("  group {}: {}\n", image.string(group.name),

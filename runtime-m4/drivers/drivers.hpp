@@ -38,12 +38,14 @@ struct Order {
 // What a driver stores about its actuator between calls.
 struct ActuatorState {
   Motion motion;           // its position, as far as the driver knows
-  vm::Value home = 0;      // where a gesture begins and ends
-  vm::Value speed = 0;     // of the gesture, per second
+  vm::Value home = 0;      // where a gesture begins and ends, or where it goes after it has turned
+  vm::Value speed = 0;     // of the legs to come, per second; way.cpp: other uses
   kernel::Time until = 0;  // when the command is done
   std::uint16_t legs = 0;  // movements of the gesture still to come
   bool placed = false;     // `motion` says where it is
   std::uint8_t actuator = 0;
+  std::uint16_t acceleration = 0;  // its limit, in whole units per second squared; 0: none
+  std::uint16_t ramp = 0;          // of `motion`, in milliseconds (trapezoid.hpp); 0: at one speed
 };
 
 struct Device {

@@ -12,7 +12,7 @@ constexpr vm::Value kDefaultSpeed = 90 * vm::kScale;  // thousandths of a degree
 
 void output(const Device& device, kernel::Time now) {
   const vm::Value position =
-      std::clamp(device.state.motion.at(now), device.wiring.min, device.wiring.max);
+      std::clamp(way::position(device, now), device.wiring.min, device.wiring.max);
   device.drive(policy::pulse_at(device.wiring, position), now);
 }
 
@@ -26,6 +26,7 @@ kernel::Time follow(const Device& device, kernel::Time now) {
 kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   if (!device.state.placed) way::stand_at_rest(device, now);
   if (order.action == vm::Action::stop) {
+    if (way::brake(device, now)) return follow(device, now);
     release(device, vm::Release::hold, now);
     return kDone;
   }

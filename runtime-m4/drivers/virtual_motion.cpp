@@ -1,7 +1,8 @@
 // A virtual actuator that moves like the real one: its commands are seen in the trace. It knows
 // where it is, and no command moves it faster than its speed limit. With a speed of its own
 // (vm::VirtualMotion says where that is stored) it takes way / speed. Without one, and for everything that is
-// not a movement, it takes as long as FOR or OVER says, or one second if neither is given.
+// not a movement, it takes as long as FOR or OVER says, or one second if neither is given. One with a limit of acceleration has a
+// speed of its own.
 #include <algorithm>
 
 #include "runtime-m4/drivers/timed.hpp"
@@ -28,26 +29,29 @@ bool moves(const Device& device, const Order& order) {
   return end == now ? kDone : end;
 }
 
+kernel::Time until_arrived(const Device& device) {
+  device.state.until = device.state.motion.end();
+  return device.state.until;
+}
+
 }  // namespace
 
 kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   if (!device.state.placed) way::stand_at_rest(device, now);
   way::stop(device, vm::Release::hold, now);
+  if (order.action == vm::Action::stop && way::brake(device, now)) return until_arrived(device);
   if (!moves(device, order)) return take_time(device, order, now);
   if (device.wiring.pin == 0) {
     device.state.until = move_in_time(device, order, now);
     return device.state.until;
   }
   const auto usual = static_cast<vm::Value>(device.wiring.pin) * vm::kScale;
-  if (!way::start(device, order, usual, now)) return kDone;
-  device.state.until = device.state.motion.end();
-  return device.state.until;
+  return way::start(device, order, usual, now) ? until_arrived(device) : kDone;
 }
 
 kernel::Time advance(const Device& device, kernel::Time now) {
   if (now < device.state.until || !way::next_leg(device, now)) return go_on(device, now);
-  device.state.until = device.state.motion.end();
-  return device.state.until;
+  return until_arrived(device);
 }
 
 void release(const Device& device, vm::Release how, kernel::Time now) {

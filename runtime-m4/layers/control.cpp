@@ -56,6 +56,7 @@ bool ControlLayer::start_unit(const vm::Image& image, unsigned actuator, Program
   unit.layer = this;
   unit.actuator = static_cast<std::uint8_t>(actuator);
   unit.drive.actuator = unit.actuator;
+  unit.drive.acceleration = image.acceleration_of(actuator);
   kernel::ThreadSpec spec;
   spec.name = name_of(image, image.actuators[actuator].name, "actuator");
   spec.category = kernel::Category::control;

@@ -133,6 +133,16 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   return {};
 }
 
+// … of an actuator of `image`. With a limit of acceleration each call may have to compute a ramp.
+constexpr ActuatorCosts actuator_costs(const vm::Image& image, std::size_t actuator) {
+  ActuatorCosts costs = actuator_costs(image.actuators[actuator].driver);
+  if (image.acceleration_of(actuator) == 0) return costs;
+  costs.start += costs::kRampBegins;
+  costs.advance += costs::kRampBegins;
+  costs.release += costs::kOnRamp;
+  return costs;
+}
+
 // A sensor's driver is either not sampled (threads.hpp: is_fed(), is_algorithm()), or has a cost.
 inline constexpr BoardCosts kOneEach = {
 #define BOARD_COST(name, doc) .name = 1,

@@ -266,6 +266,11 @@ std::string actuator_keys(const Device& device) {
     rows += row({"`speeds`", "words for `AT`, each " + above, "the words above"});
     const std::string of = vm::gives_power(actuator.driver) ? "`AT` and `TO`, " : "`AT`, ";
     rows += row({"`limits`: `SPEED`", "the maximum of " + of + above, "none"});
+    if (actuator.to_unit != nullptr && actuator.usual_speed != 0)
+      rows += row({"`limits`: `ACCELERATION`",
+                   format_acceleration(1, *actuator.at_unit) + " to " +
+                       format_acceleration(UINT16_MAX, *actuator.at_unit),
+                   "none"});
   }
   if (vm::drives_panel(actuator.driver)) {
     std::vector<std::string> colors;

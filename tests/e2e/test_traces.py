@@ -52,6 +52,23 @@ class Traces(TraceTest):
                 program.write_text(text)
                 self.check(program, stimuli.drawn(seed, text), config)
 
+    def test_ramps(self):
+        """Movements with a limit of acceleration, also those that replace each other, end in the same microsecond."""
+        config = self.folder / "ramps.json"
+        robot = json.loads((PROGRAMS / "robot.json").read_text("utf-8"))
+        for arm, acceleration in zip(robot["actuators"], ("300deg/s2", "90deg/s2")):
+            arm["limits"] = arm.get("limits", {}) | {"ACCELERATION": acceleration}
+        config.write_text(json.dumps(robot))
+        with_ramps, without = (self.check(PROGRAMS / "priorities.rsl", stimuli.PRIORITIES, *given) for given in ((config,), ()))
+        done = [[json.loads(line)["t_us"] for line in lines if '"event":"done"' in line] for lines in (with_ramps, without)]
+        self.assertNotEqual(*done)
+        for seed in range(6):
+            with self.subTest(seed=seed):
+                program = self.folder / f"ramps{seed}.rsl"
+                text = Generator(seed).program()
+                program.write_text(text)
+                self.check(program, stimuli.drawn(seed, text), config)
+
     def test_algorithms(self):
         """The firmware's modules, with synthetic recordings: the board's modules run behind its MPU."""
         for name, units, recording, words in (

@@ -44,7 +44,8 @@ class TraceTest(RobotTest):
 
     def board_trace(self, image, scenario, count, until_ms):
         """The board's lines from activation on; expects `count`, then waits briefly for extra ones."""
-        reader = LineReader("feed", "--upload", image, "--fresh", "--scenario", scenario, "--port",
+        # In the worst case a drawn program may be too slow for the board; with these readings it is not.
+        reader = LineReader("feed", "--upload", image, "--anyway", "--fresh", "--scenario", scenario, "--port",
                             self.board.port, "--watch", f"{2 * PATIENCE}s", "--format", "json")
         reader.wait_for(lambda lines: len(own(lines)) >= count, PATIENCE)
         reader.wait_for(lambda lines: len(own(lines)) > count, QUIET)

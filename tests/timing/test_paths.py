@@ -353,7 +353,7 @@ class ActuatorDrivers(unittest.TestCase):
     WIRED["pca9685_servo"] = (CHIP, WIRED["servo"][1])
     WIRED["ssd1306_face"] = (DISPLAY, ["SHOW a0 happy", "SHOW a0 sad FOR 50ms", "BLINK a0 3 TIMES OVER 133ms", "BLINK a0 700 TIMES OVER 36000s"])
 
-    def calls(self, wiring, order):
+    def calls(self, wiring, order, *more):
         """{call: [instructions]}; what a call calls of its own driver counts with it."""
         known = [(name.split("(")[0].split("::"), at) for name, at in counting.symbols(paths.FIRMWARE).items()]
         drivers = {at: words[-1] for words, at in known
@@ -361,7 +361,7 @@ class ActuatorDrivers(unittest.TestCase):
         others = [at for words, at in known if {"ControlLayer", "Trace", "Kernel"} & set(words)]
         marks = {f"{at:#x}": at for at in {*drivers, *others}}
         config = paths.robot() | {"actuators": [{"name": "a0", **wiring}]}
-        text = behavior(order) + behavior("STOP a0", "s c0 < 8", priority=95)
+        text = behavior(order) + "".join(more) + behavior("STOP a0", "s c0 < 8", priority=95)
         orders = [feed(10), wait()] + [step for value in (90, 10, 95, 20, 99, 5, 90) for step in (feed(value), wait(130))]
         measured = run(text, orders, config, marks.items())
         found, outer = {}, None
@@ -373,6 +373,35 @@ class ActuatorDrivers(unittest.TestCase):
             elif at in drivers and not outer:
                 outer = (drivers[at], count)
         return found
+
+    # One movement, or one that replaces another: ahead, behind, too close, slower, with long times; or a STOP.
+    TAKES_OVER = "MOVE a0 TO 120deg AT 30deg/s", "MOVE a0 TO 0deg", "MOVE a0 TO 177deg OVER 36000s", "MOVE a0 2 TIMES OVER 5273ms", "STOP a0"
+    RAMPED = [*((order,) for order in ("MOVE a0 TO 33deg OVER 50ms", "MOVE a0 TO 178deg OVER 5273ms", "MOVE a0 2 TIMES OVER 5273ms",
+                                       "MOVE a0 2 TIMES AT 70deg/s", "MOVE a0 TO 77.7deg OVER 36000s",
+                                       "MOVE a0 TO 1.3deg OVER 77ms\nMOVE a0 TO 2.9deg OVER 977ms")),
+              *(("MOVE a0 TO 178deg AT 66deg/s", behavior(order, "s c0 > 93", priority=92)) for order in TAKES_OVER),
+              *(("WAIT 1ms", behavior(f"FOLLOW a0 TO ({target}) AT 66deg/s", "s c0 > 8", "WHILE", 85))
+                for target in ("s c0 * 2deg", "100deg + s c0 * 1deg", "180deg - s c0 * 1.7deg"))]
+
+    def test_ramps(self):
+        """What a limit of acceleration adds to each call of the drivers that have one."""
+        print()
+        costs, most = paths.costs(), Counter()
+        for driver in ("servo", "pca9685_servo", "virtual_motion"):
+            wiring = self.WIRED[driver][0] | {"limits": {"ACCELERATION": "123deg/s2"}}
+            said = paths.actuator_drivers()[driver]
+            with self.subTest(driver):
+                measured = {}
+                for orders in self.RAMPED:
+                    for call, counts in self.calls(wiring, *orders).items():
+                        measured[call] = max([measured.get(call, 0), *counts])
+                print(f"  {driver} with ramps: {measured}")
+                for call, count in measured.items():
+                    more = costs["kOnRamp" if call == "release" else "kRampBegins"]
+                    self.assertGreaterEqual(said[call] + more, count, call)
+                    most[call] = max(most[call], count - said[call])
+        self.assertLessEqual(costs["kRampBegins"], LOOSEST * max(most["start"], most["advance"]) + SLACK)
+        self.assertLessEqual(costs["kOnRamp"], LOOSEST * most["release"] + SLACK)
 
     def test_every_driver(self):
         print()

@@ -48,7 +48,7 @@ struct ImageBuilder {
   std::string strings;
   std::vector<SourceLine> source_lines;
   std::vector<Adaptation> adaptations;
-  std::vector<Robot> robots;
+  std::vector<Trait> traits;
   std::vector<Motion> motions;
   std::vector<Track> tracks;
   std::vector<Key> keys;

@@ -565,22 +565,54 @@ TEST_CASE("responses") {
   refused(0, [](Response& r) { r.length = 0xFFFF; });
 }
 
-TEST_CASE("robot: none or one, and it has a name") {
-  const auto with = [](std::vector<Robot> robots) {
-    return [robots](auto& image) { image.robots = robots; };
+TEST_CASE("traits: the robot's name first, which is none or one") {
+  const auto with = [](std::vector<Trait> traits) {
+    return [traits](auto& image) { image.traits = traits; };
   };
   const auto called = [](std::size_t length) {
     ImageBuilder image = robot::make();
-    image.robots = {{image.name(std::string(length, 'x')), 0}};
+    image.traits = {{image.name(std::string(length, 'x')), 0, TraitKind::name}};
     return image;
   };
   check_accepted(called(1));
   check_accepted(called(kMaxRobotName));
   check_refused([&](auto& image) { image = called(kMaxRobotName + 1); },
-                {Refusal::bad_value, Section::robots, 0});
-  check_refused(with({{0, 0}, {0, 0}}), {Refusal::bad_value, Section::header, 0});
-  check_refused(with({{0, 1}}), {Refusal::bad_value, Section::robots, 0});
-  check_refused(with({{0x7FFF, 0}}), {Refusal::bad_string, Section::robots, 0});
+                {Refusal::bad_value, Section::traits, 0});
+  check_refused(with({{0, 0, TraitKind::name}, {0, 0, TraitKind::name}}),
+                {Refusal::bad_value, Section::traits, 1});
+  check_refused(with({{0, 1, TraitKind::name}}), {Refusal::bad_value, Section::traits, 0});
+  check_refused(with({{0x7FFF, 0, TraitKind::name}}), {Refusal::bad_string, Section::traits, 0});
+  check_refused(with({{1, 0, TraitKind::count_}}), {Refusal::bad_value, Section::traits, 0});
+}
+
+TEST_CASE("traits: the accelerations of actuators that move at a speed, in their order") {
+  const auto robot_with = [](std::vector<Trait> traits) {
+    ImageBuilder image = robot::make();
+    image.actuators[0].driver = DriverId::servo;
+    image.actuators[1].driver = DriverId::virtual_motion;
+    image.actuators[1].pin = 90;
+    image.traits = std::move(traits);
+    return image;
+  };
+  const auto limit = [](std::uint8_t actuator, std::uint16_t value = 400) {
+    return Trait{value, actuator, TraitKind::acceleration};
+  };
+  const auto refused = [&](std::vector<Trait> traits, Refusal why, std::uint16_t place) {
+    check_refused([&](auto& image) { image = robot_with(traits); }, {why, Section::traits, place});
+  };
+  check_accepted(robot_with({limit(0)}));
+  check_accepted(robot_with({{0, 0, TraitKind::name}, limit(0, 1), limit(1, UINT16_MAX)}));
+  refused({limit(0), {0, 0, TraitKind::name}}, Refusal::bad_value, 1);
+  refused({limit(0), limit(0)}, Refusal::bad_value, 1);
+  refused({limit(1), limit(0)}, Refusal::bad_value, 1);
+  refused({limit(0, 0)}, Refusal::bad_value, 0);
+  refused({limit(2)}, Refusal::bad_value, 0);  // it has no speed
+  refused({limit(31)}, Refusal::bad_index, 0);
+  const auto slow = [&](auto& image) {
+    image = robot_with({limit(0), limit(1)});
+    image.actuators[1].pin = 0;  // a command takes as long as it says
+  };
+  check_refused(slow, {Refusal::bad_value, Section::traits, 1});
 }
 
 TEST_CASE("adaptation: none or one, in its ranges") {

@@ -191,7 +191,7 @@ TEST_CASE("the header has the seed that is asked for or the robot's, and the rob
   CHECK(header_of({}).seed == 5);
   CHECK(header_of({.seed = 7}).seed == 7);
   CHECK(header_of({}).safety_start_ms == 30);
-  CHECK(header_of({}).robots == 0);
+  CHECK(header_of({}).traits == 0);
   robot.name = "ada";
   const Emitted named = emit(program, program, robot, {}, diagnostics);
   vm::Image image;
