@@ -175,7 +175,7 @@ TEST_CASE("a verb whose BY has a unit of its own moves nothing TO a place") {
       CHECK(&param_unit(device.actuator, vm::Param::by) == device.actuator.to_unit);
     }
   }
-  CHECK(found == 2);
+  CHECK(found == 3);
 }
 
 TEST_CASE("there is a generic virtual device of both kinds") {
