@@ -168,7 +168,7 @@ void OutputGuard::end(const Slot& slot, const vm::Image* next) {
 
 void OutputGuard::switch_off(const Slot& slot) {
   if (vm::drives_player(slot.driver)) {
-    ended_player_ = slot;
+    ended_player_ = {slot.pin, slot.changed};
     silence_ended_player(kernel_.now());
   } else if (is_on_panel(slot.driver)) {
     board_.panel().show(0);
@@ -652,9 +652,8 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
 }
 
 // The device has just been told something.
-bool OutputGuard::needs_time(const Slot& slot, kernel::Time now) {
-  const std::uint16_t gap = is_on_panel(slot.driver) ? policy::kPanelGapMs : policy::kPlayerGapMs;
-  return static_cast<std::uint16_t>(now / 1000 - slot.changed) < gap;
+bool OutputGuard::needs_time(std::uint16_t told, std::uint16_t gap, kernel::Time now) {
+  return static_cast<std::uint16_t>(now / 1000 - told) < gap;
 }
 
 // Sends the order, unless the device still needs time after the previous one. Sending a picture takes long, so no lock is held
@@ -662,24 +661,24 @@ bool OutputGuard::needs_time(const Slot& slot, kernel::Time now) {
 [[gnu::noinline]] void OutputGuard::tell(unsigned actuator, kernel::Time now) {
   Slot& slot = slots_[actuator];
   const bool panel = is_on_panel(slot.driver);
-  if (needs_time(slot, now)) return;
+  if (needs_time(slot.changed, panel ? policy::kPanelGapMs : policy::kPlayerGapMs, now)) return;
   {
     const auto lock = kernel_.lock();
     slot.changed = static_cast<std::uint16_t>(now / 1000);
     lagging_ &= ~bit(actuator);
-    if (!panel) return say(slot, slot.target);
+    if (!panel) return say(slot.pin, slot.target);
   }
   board_.panel().show(on_panel_);
 }
 
-void OutputGuard::say(const Slot& player, std::uint16_t sound) {
-  board_.say(static_cast<std::uint8_t>(player.pin), policy::player_command(sound));
+void OutputGuard::say(std::uint16_t player, std::uint16_t sound) {
+  board_.say(static_cast<std::uint8_t>(player), policy::player_command(sound));
 }
 
 void OutputGuard::silence_ended_player(kernel::Time now) {
   const auto lock = kernel_.lock();
-  if (!ended_player_ || needs_time(*ended_player_, now)) return;
-  say(*ended_player_, 0);
+  if (!ended_player_ || needs_time(ended_player_->told, policy::kPlayerGapMs, now)) return;
+  say(ended_player_->pin, 0);
   ended_player_.reset();
 }
 

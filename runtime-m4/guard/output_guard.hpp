@@ -184,10 +184,10 @@ private:
   void put_wheels(unsigned actuator, kernel::Time now);
   void own_told(unsigned actuator, const vm::Actuator& wiring);
   void tell(unsigned actuator, kernel::Time now);
-  void say(const Slot& player, std::uint16_t sound);
+  void say(std::uint16_t player, std::uint16_t sound);
   void free_panel_pin(const vm::Image& next);
   void switch_off(const Slot& slot);
-  static bool needs_time(const Slot& slot, kernel::Time now);
+  static bool needs_time(std::uint16_t told, std::uint16_t gap, kernel::Time now);
   void silence_ended_player(kernel::Time now);
   [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
   static bool drives(const vm::Image& image, const Slot& slot);
@@ -243,7 +243,10 @@ private:
   std::array<Display, vm::kMaxDisplays> displays_{};
   std::uint8_t display_count_ = 0;
   // Its program has ended, and it has not been told yet to be silent. A board has one line (boards/pins.hpp).
-  std::optional<Slot> ended_player_;
+  struct EndedPlayer {
+    std::uint16_t pin, told;  // when, in ms
+  };
+  std::optional<EndedPlayer> ended_player_;
   std::uint16_t panel_pin_ = kNoPin;  // of the board's panel; kept after its program has ended
   std::uint32_t on_panel_ = 0;        // the picture for the panel
 };
