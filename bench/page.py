@@ -73,8 +73,8 @@ Firmware:
   alone.
 * `i2c/…` is a sample of a motion sensor where the chip's I2C master works by itself: the driver's call that asks for it, the bus
   interrupts, and the driver's call that takes the bytes. QEMU has neither the master nor the sensor. So a test plays both through the
-  debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The two times that the sensor's thread
-  wakes for a sample are not included: each takes at most `wake_by_timer` of the board's `costs.def`, 450. On the reference board,
+  debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The sensor's thread wakes twice for a
+  sample; the most that each takes, `wake_by_timer` of the board's `costs.def`, is added: 900 in all. On the reference board,
   whose bus is bit-banged, a sample does keep the processor busy (`firmware/idle_second_paper_i2c`), and lower threads wait.
 * `ear/block` is the work for 20 ms of sound at the most expensive pitch, on the micro:bit V2.
 

@@ -133,9 +133,7 @@ void report_keys_of_drives(const Fields& fields, Diagnostics& diagnostics) {
 void read_acceleration_limit(const json::Value& acceleration, ActuatorConfig& actuator,
                              Diagnostics& diagnostics) {
   actuator.acceleration_span = acceleration.span;
-  const bool moves = actuator.to_unit != nullptr && actuator.at_unit != nullptr &&
-                     actuator.usual_speed != 0 && !vm::drives_wheels(actuator.driver);
-  if (!moves) {
+  if (!actuator.moves_at_a_speed()) {
     diagnostics
         .report(Code::E0205,
                 "this device does not move at a speed, so it has no ACCELERATION to limit")

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vm/drivers.hpp"
+
 namespace robosync::compiler {
 namespace {
 
@@ -17,6 +19,10 @@ auto find_in(const List& list, Predicate predicate) {
 void ChannelConfig::add_label(std::string label) {
   labels.push_back(std::move(label));
   max = static_cast<vm::Value>(labels.size() - 1) * vm::kScale;
+}
+
+bool ActuatorConfig::moves_at_a_speed() const {
+  return to_unit != nullptr && at_unit != nullptr && usual_speed != 0 && !vm::drives_wheels(driver);
 }
 
 const VerbConfig* ActuatorConfig::find_verb(std::string_view verb) const {

@@ -146,6 +146,8 @@ struct ActuatorConfig {
   std::vector<VerbConfig> verbs;
   std::vector<WordConfig> words;
 
+  // It goes TO a place at a speed of its own, which can have a limit of acceleration.
+  [[nodiscard]] bool moves_at_a_speed() const;
   [[nodiscard]] const VerbConfig* find_verb(std::string_view verb) const;
   [[nodiscard]] const WordConfig* find_word(std::string_view word) const;         // not a text
   [[nodiscard]] const WordConfig* find_text(std::string_view text) const;         // exact

@@ -266,7 +266,7 @@ std::string actuator_keys(const Device& device) {
     rows += row({"`speeds`", "words for `AT`, each " + above, "the words above"});
     const std::string of = vm::gives_power(actuator.driver) ? "`AT` and `TO`, " : "`AT`, ";
     rows += row({"`limits`: `SPEED`", "the maximum of " + of + above, "none"});
-    if (actuator.to_unit != nullptr && actuator.usual_speed != 0)
+    if (actuator.moves_at_a_speed())
       rows += row({"`limits`: `ACCELERATION`",
                    format_acceleration(1, *actuator.at_unit) + " to " +
                        format_acceleration(UINT16_MAX, *actuator.at_unit),
