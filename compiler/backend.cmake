@@ -30,9 +30,13 @@ target_sources(robosync_compiler_small PRIVATE
   modules.cpp
   project.cpp
   reading.cpp
+  codegen/code.cpp
   codegen/costly_rules.cpp
   codegen/emit.cpp
+  codegen/expression_emitter.cpp
+  codegen/operations.cpp
   codegen/records.cpp
+  codegen/response_emitter.cpp
   codegen/rules.cpp
   codegen/tables.cpp
   codegen/verify_image.cpp
@@ -40,20 +44,21 @@ target_sources(robosync_compiler_small PRIVATE
   config/algorithms.cpp
   config/boards.cpp
   config/devices.cpp
+  config/drive.cpp
   config/entries.cpp
   config/fields.cpp
   config/json_format.cpp
   config/json_mistakes.cpp
   config/json_reader.cpp
   config/names.cpp
-  config/drive.cpp
   config/panel.cpp
   config/robot.cpp
   config/robot_reader.cpp
   config/robot_vocabulary.cpp
   config/sensors.cpp
   config/values.cpp
-  config/wiring.cpp config/wiring_limits.cpp
+  config/wiring.cpp
+  config/wiring_limits.cpp
   optimize/expression_facts.cpp
   optimize/flow.cpp
   optimize/optimize.cpp
@@ -67,6 +72,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/commands.cpp
   sema/conditions.cpp
   sema/defines.cpp
+  sema/expressions.cpp
   sema/follow.cpp
   sema/functions.cpp
   sema/limits.cpp
@@ -76,6 +82,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/number_lists.cpp
   sema/perform.cpp
   sema/rules.cpp
+  sema/statements.cpp
   sema/texts.cpp
   sema/timers.cpp
   sema/variables.cpp
@@ -93,14 +100,8 @@ target_sources(robosync_compiler PRIVATE
   sema/unknown_verbs.cpp
   sema/whole_commands.cpp
   sema/condition_lints.cpp
-  sema/expressions.cpp
   sema/names.cpp
-  sema/quantities.cpp
-  sema/statements.cpp
-  codegen/code.cpp
-  codegen/expression_emitter.cpp
-  codegen/operations.cpp
-  codegen/response_emitter.cpp)
+  sema/quantities.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # As in the front end, the code that words diagnostics is optimised for size.
 if(NOT ROBOSYNC_SANITIZE)

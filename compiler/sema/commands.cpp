@@ -190,7 +190,7 @@ std::optional<std::vector<Commands::Given>> Commands::evaluate(const ast::Comman
     }
     Given given = is_chosen(i)
                       ? Given{&command.arguments[i], {}, {}, false, chosen_->text, chosen_->span}
-                      : evaluate(command.arguments[i], says_any_text(command.verb.text));
+                      : evaluate(command.arguments[i], command.verb.text);
     good = good && (!given.is_number || given.number.is_number());
     result.push_back(std::move(given));
   }
@@ -227,7 +227,7 @@ Commands::Given Commands::put_together(const ast::Command& command, std::size_t 
 }
 
 // A single word belongs to the actuator, unless only the program knows it.
-Commands::Given Commands::evaluate(const ast::Argument& argument, bool says_any_text) {
+Commands::Given Commands::evaluate(const ast::Argument& argument, std::string_view verb) {
   Given given{&argument, param_of(argument), {}, false, std::nullopt, argument.span};
   if (const auto* text = std::get_if<ast::Text>(&argument.value)) given.text = text->text;
   if (const auto* word = std::get_if<ast::Word>(&argument.value)) {
@@ -241,8 +241,8 @@ Commands::Given Commands::evaluate(const ast::Argument& argument, bool says_any_
                      names_a_number(alone->name));
   if (!given.is_number) return given;
   Typed value = evaluate_value(argument);
-  if (value.type != Type::word || !says_any_text ||
-      argument.preposition != ast::Preposition::none) {
+  if (value.type != Type::word || argument.preposition != ast::Preposition::none ||
+      !says_any_text(verb)) {
     given.number = expressions_.number_of(std::move(value));
     return given;
   }

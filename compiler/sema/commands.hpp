@@ -105,8 +105,8 @@ private:
   bool calls_define(const ast::Command& command);
   bool is_foreign(const ast::Command& command);
   std::optional<std::vector<Given>> evaluate(const ast::Command& command, std::size_t named_by);
-  // `says_any_text`: a word of the program is what it says.
-  Given evaluate(const ast::Argument& argument, bool says_any_text);
+  Given evaluate(const ast::Argument& argument, std::string_view verb);
+  // Then a word of the program is what it says.
   [[nodiscard]] bool says_any_text(std::string_view verb) const;
   // The text whose parts begin at `first`; without a text after a mistake.
   Given put_together(const ast::Command& command, std::size_t first);
