@@ -72,8 +72,10 @@ std::int64_t arc_of(std::int64_t angle, const vm::DriveParameters& drive) {
   return std::int64_t{bounded(angle)} * drive.track * kPiAbove / (kPiBelow * kWholeTurn);
 }
 
-Course course_of(const Device& device, const Order& order, const vm::DriveParameters& drive,
-                 vm::Value position) {
+// Not inline, like powers_of() and go(): the stack of an actuator's thread has no room for all of them at once.
+[[gnu::noinline]] Course course_of(const Device& device, const Order& order,
+                                   const vm::Value* parameters, vm::Value position) {
+  const vm::DriveParameters drive = vm::drive_of(parameters);
   const vm::Value most = most_of(device, drive);
   const vm::Value speed = std::min(order.get(vm::Param::at, drive.usual), most);
   const bool back = order.get(vm::Param::direction, 1) < 0;
@@ -103,13 +105,26 @@ std::int32_t trimmed(std::uint32_t pulse, vm::Side side, const vm::DriveParamete
                                    std::uint32_t{vm::kFullTrim});
 }
 
+struct Powers {
+  std::int32_t left, right;
+};
+
+[[gnu::noinline]] Powers powers_of(const Course& course, bool turns, const vm::Value* parameters) {
+  const vm::DriveParameters drive = vm::drive_of(parameters);
+  const std::uint32_t pulse = pulse_of(course.speed, drive);
+  const std::int32_t left = trimmed(pulse, vm::Side::left, drive);
+  const std::int32_t right = trimmed(pulse, vm::Side::right, drive);
+  return {course.back ? -left : left, course.back != turns ? -right : right};
+}
+
 void stop(const Device& device, kernel::Time now) {
   way::stop(device, vm::Release::hold, now);
   device.drive_wheels(0, 0, now);
 }
 
 // The position stays within the range, which the robot may leave.
-void go(const Device& device, const Course& course, bool turns, kernel::Time now) {
+[[gnu::noinline]] void go(const Device& device, const Course& course, bool turns,
+                          kernel::Time now) {
   const vm::Value from = device.state.motion.at(now);
   const std::int64_t way = turns ? 0 : course.way;
   const std::int64_t to =
@@ -126,21 +141,17 @@ kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   if (parameters == nullptr) return kDone;
   if (!device.state.placed) way::stand(device, 0, now);
   way::stop(device, vm::Release::hold, now);
-  const vm::DriveParameters drive = vm::drive_of(parameters);
   Course course;
   if (order.action != vm::Action::stop)
-    course = course_of(device, order, drive, device.state.motion.at(now));
+    course = course_of(device, order, parameters, device.state.motion.at(now));
   if (course.length == 0 || course.length == kernel::kForever || course.speed == 0) {
     stop(device, now);
     return kDone;
   }
   const bool turns = order.action == vm::Action::play;
-  const std::uint32_t pulse = pulse_of(course.speed, drive);
-  const std::int32_t left = trimmed(pulse, vm::Side::left, drive);
-  const std::int32_t right = trimmed(pulse, vm::Side::right, drive);
-  const bool right_back = course.back != turns;
+  const Powers powers = powers_of(course, turns, parameters);
   go(device, course, turns, now);
-  device.drive_wheels(course.back ? -left : left, right_back ? -right : right, now);
+  device.drive_wheels(powers.left, powers.right, now);
   return device.state.until;
 }
 

@@ -66,23 +66,23 @@ void set_off(const Device& device, vm::Value from, vm::Value to, const trapezoid
 }
 
 // It has been moving for as long as it takes to reach its present speed.
-std::uint64_t time_since_rest(const Device& device, std::int64_t velocity, kernel::Time now) {
+[[gnu::noinline]] std::uint64_t time_since_rest(const Device& device, std::int64_t velocity,
+                                                kernel::Time now) {
   const auto speed = static_cast<std::uint64_t>(velocity < 0 ? -velocity : velocity);
   return std::min<std::uint64_t>(trapezoid::ramp_to(speed, device.state.acceleration), now / 1000);
 }
 
-// Goes on to `target` at its present speed: the rest of a movement that began some time ago, that far away that this is its
-// speed and its position now. False if it cannot.
-bool go_on_to(const Device& device, vm::Value target, std::int64_t pace, std::int64_t velocity,
-              kernel::Time now) {
-  const vm::Value here = position(device, now);
+// Goes on from `here` to `target` at its present speed: the rest of a movement that began some time ago, that far away that this
+// is its speed and its position now. False if it cannot.
+[[gnu::noinline]] bool go_on_to(const Device& device, vm::Value here, vm::Value target,
+                                vm::Value pace, std::int64_t velocity, kernel::Time now) {
   if ((target > here) != (velocity > 0) || target == here) return false;
   const std::uint64_t before = time_since_rest(device, velocity, now);
   const std::uint64_t left = distance(here, target);
   const std::uint64_t most =
       left + trapezoid::rounded_up(device.state.acceleration * before * before, 2000);
   if (most > UINT32_MAX) return false;
-  const auto total = pace < 0 ? pace - static_cast<std::int64_t>(before) : pace;
+  const std::int64_t total = pace < 0 ? pace - static_cast<std::int64_t>(before) : pace;
   const trapezoid::Profile profile = plan(device, static_cast<std::uint32_t>(most), total);
   if (before > profile.ramp) return false;
   // The part of the way before `now` is before² / (2 * R * C) of the whole.
@@ -95,20 +95,25 @@ bool go_on_to(const Device& device, vm::Value target, std::int64_t pace, std::in
   return true;
 }
 
-// The second half of a triangle. Where its limits of position leave no room, the actuator stops there.
-void slow_down(const Device& device, std::int64_t velocity, kernel::Time now) {
-  const std::int64_t here = position(device, now);
-  const std::int64_t speed = velocity < 0 ? -velocity : velocity;
+// `way`, or less where the limits of position leave no room.
+[[gnu::noinline]] vm::Value within_room(const Device& device, vm::Value here, bool forward,
+                                        std::uint64_t way) {
+  const vm::Value end = forward ? device.wiring.max : device.wiring.min;
+  const std::uint32_t room = (end > here) == forward ? distance(here, end) : 0;
+  const std::uint32_t behind =
+      forward ? distance(vm::kValueMin, here) : distance(here, vm::kValueMax);
+  return static_cast<vm::Value>(std::min<std::uint64_t>(way, std::min(room, behind)));
+}
+
+// From `here` on: the second half of a triangle. Where its limits of position leave no room, the actuator stops there.
+[[gnu::noinline]] void slow_down(const Device& device, vm::Value here, std::int64_t velocity,
+                                 kernel::Time now) {
   const bool forward = velocity > 0;
-  const auto ramp = static_cast<std::int64_t>(time_since_rest(device, velocity, now));
-  const std::int64_t room = forward ? device.wiring.max - here : here - device.wiring.min;
-  const std::int64_t behind = forward ? here - vm::kValueMin : vm::kValueMax - here;
-  const std::int64_t way = std::clamp<std::int64_t>(
-      speed * ramp / 2000, 0, std::max<std::int64_t>(std::min(room, behind), 0));
-  const auto half = static_cast<std::uint64_t>(ramp);
-  set_off(device, static_cast<vm::Value>(forward ? here - way : here + way),
-          static_cast<vm::Value>(forward ? here + way : here - way), {half, 2 * half},
-          now - half * 1000);
+  const std::uint64_t ramp = time_since_rest(device, velocity, now);
+  const auto speed = static_cast<std::uint64_t>(forward ? velocity : -velocity);
+  const vm::Value ahead = within_room(device, here, forward, speed * ramp / 2000);
+  const vm::Value way = forward ? ahead : -ahead;
+  set_off(device, here - way, here + way, {ramp, 2 * ramp}, now - ramp * 1000);
 }
 
 void begin_leg(const Device& device, vm::Value from, vm::Value to, kernel::Duration length,
@@ -129,26 +134,26 @@ void begin_leg(const Device& device, vm::Value from, vm::Value to, kernel::Durat
   const bool is_timed = order.has(vm::Param::over);
   if (!is_timed && speed <= 0) return brake(device, now);
   const vm::Value target = target_of(device, order, now);
-  std::int64_t pace =
-      is_timed ? -std::int64_t{std::max(order.get(vm::Param::over, 0), vm::Value{0})} : speed;
+  vm::Value pace = is_timed ? -std::max(order.get(vm::Param::over, 0), vm::Value{0}) : speed;
   const std::int64_t present = velocity(device.state, now);
+  const vm::Value here = position(device, now);
   device.state.legs = 0;
   if (present == 0) {
     begin_ramps(device, target, pace, now);
-  } else if (!go_on_to(device, target, pace, present, now)) {
-    slow_down(device, present, now);
+  } else if (!go_on_to(device, here, target, pace, present, now)) {
+    slow_down(device, here, present, now);
     if (pace < 0)
-      pace = std::min<std::int64_t>(
-          pace + static_cast<std::int64_t>((device.state.motion.end() - now) / 1000), 0);
+      pace = std::min(pace + static_cast<vm::Value>((device.state.motion.end() - now) / 1000),
+                      vm::Value{0});
     device.state.home = target;
-    device.state.speed = static_cast<vm::Value>(pace);
+    device.state.speed = pace;
     device.state.legs = 1;
   }
   return true;
 }
 
-bool start_move(const Device& device, const Order& order, vm::Value speed, kernel::Time now) {
-  if (has_ramps(device)) return start_with_ramps(device, order, speed, now);
+[[gnu::noinline]] bool start_move(const Device& device, const Order& order, vm::Value speed,
+                                  kernel::Time now) {
   const vm::Value position = device.state.motion.at(now);
   const vm::Value target = target_of(device, order, now);
   kernel::Duration length = travel_time(position, target, speed);
@@ -200,7 +205,8 @@ vm::Value gesture_speed(const Device& device, const Order& order, vm::Value spee
   return static_cast<vm::Value>(std::clamp<std::int64_t>(needed, 1, device.wiring.speed_limit));
 }
 
-bool start_gesture(const Device& device, const Order& order, vm::Value speed, kernel::Time now) {
+[[gnu::noinline]] bool start_gesture(const Device& device, const Order& order, vm::Value speed,
+                                     kernel::Time now) {
   if (speed <= 0 || device.wiring.min == device.wiring.max) return brake(device, now);
   const vm::Value times = order.get(vm::Param::times, vm::kScale) / vm::kScale;
   const vm::Value bounded = std::clamp(times, vm::Value{1}, kMostGestures);
@@ -246,7 +252,7 @@ void stop(const Device& device, vm::Release how, kernel::Time now) {
   if (!has_ramps(device)) return false;
   const std::int64_t present = velocity(device.state, now);
   if (present == 0) return false;
-  slow_down(device, present, now);
+  slow_down(device, position(device, now), present, now);
   device.state.legs = 0;
   return true;
 }
@@ -267,8 +273,9 @@ vm::Value target_of(const Device& device, const Order& order, kernel::Time now) 
 bool start(const Device& device, const Order& order, vm::Value usual, kernel::Time now) {
   if (!device.state.placed) stand_at_rest(device, now);
   const vm::Value speed = order.get(vm::Param::at, std::min(usual, device.wiring.speed_limit));
-  return has_target(order) ? start_move(device, order, speed, now)
-                           : start_gesture(device, order, speed, now);
+  if (!has_target(order)) return start_gesture(device, order, speed, now);
+  return has_ramps(device) ? start_with_ramps(device, order, speed, now)
+                           : start_move(device, order, speed, now);
 }
 
 bool next_leg(const Device& device, kernel::Time now) {

@@ -11,7 +11,8 @@
 
 namespace robosync::layers {
 
-vm::Value scaled(std::int32_t raw, const vm::Channel& channel) {
+// Not inline: a sample is taken on the deepest path of the sensor's stack.
+[[gnu::noinline]] vm::Value scaled(std::int32_t raw, const vm::Channel& channel) {
   const std::int64_t product = std::int64_t{raw} * channel.scale_num;  // |product| <= 2^62
   const std::int64_t half = channel.scale_den / 2;
   const std::int64_t quotient = (product < 0 ? product - half : product + half) / channel.scale_den;

@@ -41,7 +41,7 @@ inline constexpr unsigned kFixedThreads = 3;
 inline constexpr std::uint32_t kSensorStack = 576;
 inline constexpr std::uint32_t kStepStack = 704;
 inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard
-inline constexpr std::uint32_t kControlStack = 448;
+inline constexpr std::uint32_t kControlStack = 512;
 // An algorithm has its own region, for its module's data and stack. At least kModuleStack bytes of it are stack.
 inline constexpr std::uint32_t kAlgorithmStack = 1024;
 inline constexpr std::uint32_t kModuleStack = 768;

@@ -32,6 +32,7 @@ CALLED_BY_POINTER = (
     (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
     (r"guard::OutputGuard::(halt_chips|switch_chips?_off)", BOARD + r"enable\("),
+    (r"guard::OutputGuard::(put|put_wheels|change_pin|turn|shut|settle)$", BOARD + r"pwm_(read|write)\("),
     (r"guard::OutputGuard::(tell|say)$", BOARD + r"(say|panel)\(|" + PANEL),
     (r"guard::OutputGuard::measured_by", BOARD + r"pins\("),
     (r"guard::", OUTPUTS),
