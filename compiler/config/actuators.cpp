@@ -197,6 +197,35 @@ void check_voltage(const Fields& fields, const WiringType& type, const Device& d
       .label(volts->span);
 }
 
+// How it is wired, by its type.
+void read_place(Fields& fields, const WiringType& type, const Board::Part* part,
+                WiringReader& wiring, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+  if (type.name != "VIRTUAL" && vm::drives_channel(actuator.driver)) {
+    const ChipWiring place = wiring.read_chip(fields);
+    actuator.chip = place.chip;
+    actuator.pin = place.channel;
+  } else if (type.name == "I2C" && vm::drives_screen(actuator.driver)) {
+    const Wiring place = wiring.read_display(fields, type);
+    actuator.bus = place.bus;
+    actuator.pin = place.place;
+  } else if (type.name == "PWM" && vm::drives_wheels(actuator.driver)) {
+    wiring.take_drive(fields, type);
+    actuator.drive = read_drive(fields, wiring, actuator, diagnostics);
+  } else {
+    const Wiring place = wiring.read_actuator(fields, type, part, actuator.driver);
+    actuator.bus = place.bus;
+    actuator.pin = place.place;
+    if (type.name == "VIRTUAL") make_virtual(actuator);
+    if (type.name != "VIRTUAL" && actuator.driver == vm::DriverId::virtual_actuator)
+      wiring.check_without_driver(fields, type, place);
+    if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
+    if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
+    if (vm::drives_panel(actuator.driver)) wiring.check_panel(fields, place);
+    if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
+      wiring.check_part(fields, part);
+  }
+}
+
 }  // namespace
 
 std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringReader& wiring,
@@ -214,30 +243,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
   if (known == nullptr) return actuator;
-  if (type != nullptr && type->name != "VIRTUAL" && vm::drives_channel(actuator.driver)) {
-    const ChipWiring place = wiring.read_chip(fields);
-    actuator.chip = place.chip;
-    actuator.pin = place.channel;
-  } else if (type != nullptr && type->name == "I2C" && vm::drives_screen(actuator.driver)) {
-    const Wiring place = wiring.read_display(fields, *type);
-    actuator.bus = place.bus;
-    actuator.pin = place.place;
-  } else if (type != nullptr && type->name == "PWM" && vm::drives_wheels(actuator.driver)) {
-    wiring.take_drive(fields, *type);
-    actuator.drive = read_drive(fields, wiring, actuator, diagnostics);
-  } else if (type != nullptr) {
-    const Wiring place = wiring.read_actuator(fields, *type, part, device.actuator.driver);
-    actuator.bus = place.bus;
-    actuator.pin = place.place;
-    if (type->name == "VIRTUAL") make_virtual(actuator);
-    if (type->name != "VIRTUAL" && actuator.driver == vm::DriverId::virtual_actuator)
-      wiring.check_without_driver(fields, *type, place);
-    if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
-    if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
-    if (vm::drives_panel(actuator.driver)) wiring.check_panel(fields, place);
-    if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
-      wiring.check_part(fields, part);
-  }
+  if (type != nullptr) read_place(fields, *type, part, wiring, actuator, diagnostics);
   if (type != nullptr) check_voltage(fields, *type, device, wiring, diagnostics);
   actuator.panel = read_lights(fields, device.actuator.driver, diagnostics);
   if (!vm::drives_wheels(device.actuator.driver)) report_keys_of_drives(fields, diagnostics);

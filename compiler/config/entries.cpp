@@ -116,8 +116,8 @@ void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnos
 
 // What to write in place of a type without a driver.
 std::string other_than(std::string_view type, bool is_sensor) {
-  const std::string feeds = is_sensor ? "`\"type\": \"VIRTUAL\"` says that it is fed"
-                                      : "`\"type\": \"VIRTUAL\"` says that it has no hardware";
+  std::string feeds = is_sensor ? "`\"type\": \"VIRTUAL\"` says that it is fed"
+                                : "`\"type\": \"VIRTUAL\"` says that it has no hardware";
   if (type == "SPI")
     return "no board has an SPI bus for programs; many parts can be wired by I2C, too; " + feeds;
   if (type == "UART")

@@ -26,7 +26,7 @@ constexpr milliseconds kLook{20};
 constexpr std::uint32_t kLongestStartMs = 500;
 constexpr milliseconds kBegins{1000};  // program time has begun by then, in a slow emulator, too
 // Program time: by then the rules have been evaluated, and the board has seen whether one tripped.
-constexpr std::uint64_t kEvaluatedUs = 2 * policy::kSafetyPeriodMs * 1000;
+constexpr std::uint64_t kEvaluatedUs = std::uint64_t{2} * policy::kSafetyPeriodMs * 1000;
 
 constexpr std::array kKeepingStates = {
 #define KEEPING(name, doc) std::string_view(#name),
