@@ -22,8 +22,11 @@ std::vector<BusLoad> overloaded_buses(const vm::Image& image, const policy::Boar
     const vm::Sensor& sensor = image.sensors[s];
     const std::uint32_t us = policy::bus_us(sensor, board) * times_in_window(sensor);
     if (us == 0) continue;
-    auto load = std::ranges::find(loads, sensor.bus, &BusLoad::bus);
-    if (load == loads.end()) load = loads.insert(loads.end(), BusLoad{.bus = sensor.bus});
+    const bool spi = vm::is_on_spi(sensor.driver);
+    auto load = std::ranges::find_if(
+        loads, [&](const BusLoad& one) { return one.bus == sensor.bus && one.spi == spi; });
+    if (load == loads.end())
+      load = loads.insert(loads.end(), BusLoad{.bus = sensor.bus, .spi = spi});
     load->us += us;
     load->shares.push_back({s, us});
   }

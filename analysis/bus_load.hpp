@@ -1,4 +1,4 @@
-// What the I2C buses of a board must carry together, if they work on their own, and whether there is time for it.
+// What the I2C and SPI buses of a board must carry together, if they work on their own, and whether there is time for it.
 //
 // Sensors on such a bus are asked a tick before a reading is due, and an answer that is not there two ticks later is given up.
 // All of them may be due together: at a program's start, and where their periods meet.
@@ -18,6 +18,7 @@ struct BusLoad {
     std::uint32_t us;  // how long its requests keep the bus busy
   };
   std::uint8_t bus = 0;
+  bool spi = false;      // else I2C
   std::uint32_t us = 0;  // of all its sensors
   std::vector<Share> shares{};
 };

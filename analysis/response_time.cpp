@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace robosync::analysis {
@@ -315,12 +316,37 @@ double utilization(const TaskSet& set, const Firing& rule) {
   return rule.gap == 0 ? sum : std::min(sum, share(rule.cost, rule.gap));
 }
 
+namespace {
+
+// Of the rules in this choice: in each step, at most the most expensive one fires.
+double utilization_of_choice(const TaskSet& set, std::size_t choice) {
+  double sum = 0;
+  std::map<std::size_t, Instructions> most;  // by source
+  for (const Firing& rule : set.firings) {
+    if (rule.choice != choice) continue;
+    sum += utilization(set, rule);
+    for (const std::size_t j : rule.sources)
+      most[j] = std::max(most[j], rule.cost);
+  }
+  double together = 0;
+  for (const auto& [j, cost] : most)
+    together += share(cost, set.sources[j].period);
+  return std::min(sum, together);
+}
+
+}  // namespace
+
 double utilization(const TaskSet& set) {
   double sum = 0;
   for (const Source& source : set.sources)
     sum += share(source.sample + source.step, source.period);
-  for (const Firing& rule : set.firings)
-    sum += utilization(set, rule);
+  std::set<std::size_t> choices;
+  for (const Firing& rule : set.firings) {
+    if (rule.choice == Firing::kNone)
+      sum += utilization(set, rule);
+    else if (choices.insert(rule.choice).second)
+      sum += utilization_of_choice(set, rule.choice);
+  }
   for (const Interference& one : set.interferences)
     sum += share(one.cost, one.period);
   return sum;

@@ -117,6 +117,8 @@ private:
       case Effect::none:
       case Effect::division:
       case Effect::event:
+      case Effect::draw:
+      case Effect::clock:
       case Effect::halt:
         return;
     }

@@ -57,15 +57,17 @@ bool is_momentary(std::span<const vm::Word> condition) {
 }
 
 // There is an actuator that every side of both rules wants.
+// The actuators that each of its responses has.
+Actuators common_actuators(const vm::Image& image, unsigned r) {
+  const vm::Rule& rule = image.rules[r];
+  Actuators mask = ~Actuators{0};
+  for (const std::uint16_t index : {rule.then_response, rule.else_response})
+    if (index != vm::kNoIndex) mask &= image.responses[index].actuators;
+  return rule.then_response == vm::kNoIndex ? Actuators{0} : mask;
+}
+
 bool common_actuator(const vm::Image& image, unsigned a, unsigned b) {
-  const auto everywhere = [&](unsigned r) {
-    const vm::Rule& rule = image.rules[r];
-    Actuators mask = ~Actuators{0};
-    for (const std::uint16_t index : {rule.then_response, rule.else_response})
-      if (index != vm::kNoIndex) mask &= image.responses[index].actuators;
-    return rule.then_response == vm::kNoIndex ? Actuators{0} : mask;
-  };
-  return (everywhere(a) & everywhere(b)) != 0;
+  return (common_actuators(image, a) & common_actuators(image, b)) != 0;
 }
 
 unsigned most_wanted(const std::vector<Actuators>& masks) {
@@ -400,6 +402,11 @@ Pauses StepWork::turns(unsigned r) const {
   const bool at_once = kind == RuleKind::while_ && actuators({r}) == 0;
   turns.note(at_once ? 1 : policy::kSetpointPeriodMs);
   return turns;
+}
+
+Actuators StepWork::held_while_pausing(unsigned r) const {
+  const bool due_otherwise = image_.rules[r].kind == RuleKind::every || wants_on(r);
+  return due_otherwise || !worst_[r].pauses.any() ? 0 : common_actuators(image_, r);
 }
 
 }  // namespace robosync::analysis

@@ -72,6 +72,8 @@ public:
   // How often a waiting response goes on, a rule starts again, an EVERY comes round; not any():
   // the rule is never repeatedly due on its own.
   [[nodiscard]] Pauses turns(unsigned rule) const;
+  // If a pause is all that makes the rule due on its own: the actuators that it holds in each pause; else none.
+  [[nodiscard]] Actuators held_while_pausing(unsigned rule) const;
 
 private:
   [[nodiscard]] vm::Word last_word(unsigned rule) const;

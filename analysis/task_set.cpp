@@ -3,6 +3,7 @@
 #include "analysis/task_set.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -52,6 +53,9 @@ public:
       if (work_.turns(r).any()) add_turns(r);
       if (work_.held_ms(r) != 0 && !work_.is_safety(r)) add_held(r);
     }
+    for (const Holders& holders : holders_)
+      holders.rules.size() == 1 ? add_rule(*holders.rules.begin(), holders.period_ms)
+                                : add_holders(holders);
     add_fading();
     add_checks();
     add_firings();
@@ -62,6 +66,18 @@ public:
   }
 
 private:
+  // Rules whose responses have a common actuator, and pause for at least this time.
+  struct Holders {
+    Actuators held;
+    std::uint32_t period_ms;
+    Rules rules;
+  };
+  // Rules of which one goes on in each step of the source.
+  struct GoingOn {
+    Rules rules;
+    std::size_t source;
+  };
+
   Instructions instructions_in_ms(Instructions ms) const {
     return ms * board_.instructions_per_ms();
   }
@@ -135,7 +151,7 @@ private:
       source.follows = sampled_input_of(sensor);
     } else if (!policy::is_fed(sensor))
       source.sample =
-          board_.wake_by_timer + policy::sample_cost(sensor, board_) +
+          board_.wake_by_timer + policy::sample_cost(image_, sensor, board_) +
           (sensor.channel_count - Instructions{1}) * costs::kChannel;  // the first is in the step
     if (const Instructions asking = cost_of_asking(sensor); asking != 0) {
       const std::size_t asked = add_asking(sensor, s, asking, source.period);
@@ -146,10 +162,8 @@ private:
         source.delay = instructions_in_ms(1 + policy::kBusTicks);
       }
     }
-    // The measurement for a sample began with the sample before.
-    if (vm::measures_when_told(sensor.driver)) source.measuring = source.period;
-    // Its block of sound ended half a period before, or later, and is as long as a period.
-    if (vm::is_microphone(sensor.driver)) source.measuring = source.period + source.period / 2;
+    if (const Instructions measuring = time_of_measuring(sensor, source.period); measuring != 0)
+      source.measuring = measuring;
     if ((channels & work_.watched()).any()) source.sample += board_.wake + looks() + work_.trips();
     source.step = work_.step(rules, changed);
     place(source, s);
@@ -158,6 +172,16 @@ private:
       if ((work_.actuators(fire) >> a & 1) != 0)
         source.actuators.emplace_back(image_.string(image_.actuators[a].name));
     add_with_followers(std::move(source), rules, fire, work_.sets(fire));
+  }
+
+  // How long before its sample the measurement began, if that is a period or more; else 0.
+  static Instructions time_of_measuring(const vm::Sensor& sensor, Instructions period) {
+    // With the sample before.
+    if (vm::measures_when_told(sensor.driver)) return period;
+    // Its block of sound ended half a period before, or later, and is as long as a period.
+    if (vm::is_microphone(sensor.driver)) return period + period / 2;
+    // With the sample before, and the result is given twice.
+    return vm::is_board_part(sensor.driver) ? 2 * period : 0;
   }
 
   // Nothing reads it, so its thread ranks below everything that behaviours need.
@@ -205,17 +229,18 @@ private:
     return policy::is_fed(image_.sensors[input]) ? Source::kNone : source_of_sensor_[input];
   }
 
-  // Due on its own, in the step thread.
-  void add_timed(std::string name, std::uint32_t period_ms, const Rules& rules,
-                 const Inputs& changed, const Rules& fire, const Inputs& set) {
+  // Due on its own, in the step thread. Returns which source it is.
+  std::size_t add_timed(std::string name, std::uint32_t period_ms, const Rules& rules,
+                        const Inputs& changed, const Rules& fire, const Inputs& set) {
     Source source;
     source.name = std::move(name);
     source.period = instructions_in_ms(period_ms);
     source.step = work_.step(rules, changed);
     source.outranks_a_behavior = true;
     source.may_outrank_one = true;
-    by_itself_ = set_.sources.size();
+    const std::size_t added = set_.sources.size();
     add_with_followers(std::move(source), rules, fire, set);
+    return added;
   }
 
   // A time word of a SAFETY rule may require one more look after each.
@@ -279,8 +304,11 @@ private:
                               instructions_in_ms(work_.cooldown_ms(rule))});
     }
     group(rules);
-    for (const auto& [rule, sources] : goes_on_)
-      set_.firings.push_back({name_of(rule), work_.by_itself(rule), false, sources});
+    for (const GoingOn& one : goes_on_) {
+      const unsigned worst = *std::ranges::max_element(
+          one.rules, {}, [this](unsigned rule) { return work_.by_itself(rule); });
+      set_.firings.push_back({name_of(worst), work_.by_itself(worst), false, {one.source}});
+    }
   }
 
   // Which of the firings so far, those of `rules`, exclude each other, and which want the same
@@ -360,23 +388,52 @@ private:
   void add_turns(unsigned r) {
     const Pauses turns = work_.turns(r);
     const bool apart = turns.better_apart();
-    if (!apart || turns.others_ms != Pauses::kNever)
-      add_rule(r, apart ? turns.others_ms : turns.least_ms);
+    if (!apart)
+      join_holders(r, turns.least_ms);
+    else if (turns.others_ms != Pauses::kNever)
+      add_rule(r, turns.others_ms);
     for (unsigned i = 0; apart && i < turns.at_once; ++i)
       add_rule(r, turns.again_ms);
     const bool often = !apart || turns.again_ms <= policy::kSetpointPeriodMs;
     if (often && set_.short_wait == TaskSet::kNoWait) set_.short_wait = turns.line;
   }
 
+  // A response holds its actuators while it pauses. So, of responses with a common actuator, one pauses at a time, and all
+  // together go on as often as one does.
+  void join_holders(unsigned r, std::uint32_t period_ms) {
+    const Actuators held = work_.held_while_pausing(r);
+    const auto joined = std::ranges::find_if(holders_, [&](const Holders& holders) {
+      return holders.period_ms == period_ms && (holders.held & held) != 0;
+    });
+    if (joined == holders_.end()) {
+      holders_.push_back({held, period_ms, {r}});
+      return;
+    }
+    joined->held &= held;
+    joined->rules.insert(r);
+  }
+
+  // One that goes on may start another, so none of them counts as fired.
+  void add_holders(const Holders& holders) {
+    Inputs set;
+    for (const unsigned rule : holders.rules)
+      set |= work_.later_sets(rule);
+    const auto actuator = static_cast<unsigned>(std::countr_zero(holders.held));
+    const std::string_view name = image_.string(image_.actuators[actuator].name);
+    const std::size_t source =
+        add_timed(fmt::format("responses that hold {}", name), holders.period_ms, {}, {}, {}, set);
+    goes_on_.push_back({holders.rules, source});
+  }
+
   void add_rule(unsigned r, std::uint32_t period_ms) {
     // A response that goes on evaluates no condition.
     const bool evaluated = image_.rules[r].kind == vm::RuleKind::every;
-    add_timed(fmt::format("{}, by itself", name_of(r)), period_ms, evaluated ? Rules{r} : Rules{},
-              {}, {r}, evaluated ? work_.sets({r}) : work_.later_sets(r));
+    const std::size_t source = add_timed(fmt::format("{}, by itself", name_of(r)), period_ms,
+                                         evaluated ? Rules{r} : Rules{}, {}, {r},
+                                         evaluated ? work_.sets({r}) : work_.later_sets(r));
     // What is known of triggers does not apply to a response that goes on.
-    auto& triggers = triggered_by_[r];
-    goes_on_[r].push_back(std::exchange(by_itself_, 0));
-    std::erase(triggers, goes_on_[r].back());
+    std::erase(triggered_by_[r], source);
+    goes_on_.push_back({{r}, source});
   }
 
   void add_fading() {
@@ -410,7 +467,8 @@ private:
     Instructions longest = 0;
     unsigned on_bus = 0;
     for (const vm::Sensor& sensor : image_.sensors) {
-      const Instructions transfer = policy::is_fed(sensor) || vm::is_microphone(sensor.driver)
+      const Instructions transfer = policy::is_fed(sensor) || vm::is_microphone(sensor.driver) ||
+                                            vm::counts_edges(sensor.driver)
                                         ? 0  // it holds no bus
                                         : policy::sample_cost(sensor.driver, board_);
       on_bus += transfer != 0 ? 1 : 0;
@@ -438,8 +496,20 @@ private:
       set_.interferences.push_back({"the panel", period, board_.panel});
   }
 
+  // All the edges that the board counts in a period may come at once.
+  void add_edges() {
+    if (board_.edge == 0) return;
+    for (const vm::Sensor& sensor : image_.sensors)
+      if (vm::counts_edges(sensor.driver))
+        set_.interferences.push_back(
+            {fmt::format("the edges of {}", image_.string(sensor.name)),
+             instructions_in_ms(std::uint32_t{sensor.period_ms}),
+             Instructions{board_.edge} * policy::most_edges(sensor.period_ms)});
+  }
+
   void add_interferences() {
     const Instructions period = instructions_in_ms(policy::kSafetyPeriodMs);
+    add_edges();
     set_.interferences.push_back(
         {"the tick", instructions_in_ms(1), Instructions{board_.tick} + board_.switch_threads});
     set_.interferences.push_back({"the serial line",
@@ -479,10 +549,11 @@ private:
   std::int8_t cap_;
   StepWork work_;
   TaskSet set_;
-  // By rule: the sources whose steps may trigger it, or let it go on.
-  std::map<unsigned, std::vector<std::size_t>> triggered_by_, goes_on_;
+  std::map<unsigned, std::vector<std::size_t>>
+      triggered_by_;  // by rule: the sources whose steps may trigger it
+  std::vector<Holders> holders_;
+  std::vector<GoingOn> goes_on_;
   std::vector<std::size_t> source_of_sensor_;
-  std::size_t by_itself_ = 0;  // the source that add_timed() made last
   Actuators commanded_ = 0;
 };
 

@@ -8,8 +8,10 @@ figure grew (recorded.py).
 
 import argparse
 import json
+import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import answer
@@ -34,17 +36,22 @@ from rsc import RscError
 BARS = json.loads((Path(__file__).parent / "bars.json").read_text())
 GROUPS = (workloads.workload_figures, workloads.smoothing_figures, figures.opcode_figures, figures.image_figures,
           figures.kernel_figures, figures.size_figures, memory.memory_figures, growth.growth_figures,
-          figures.link_figures, answer.answer_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures,
+          figures.link_figures, answer.answer_figures, upload.upload_figures, figures.signature_figures, figures.power_up_figures, figures.ear_figures, figures.algorithms_figures,
           path.path_figures, safety.safety_figures, idle.idle_figures, compile_figures.compile_figures,
           figures.tool_figures, bus.i2c_figures, boards.board_figures)
+# Those that measure time. Another busy core would make them slower, so each runs alone; the others count, and run in parallel.
+TIMED = {figures.link_figures, answer.answer_figures, upload.upload_figures, compile_figures.compile_figures}
 BY_NAME = {group.__name__.removesuffix("_figures"): group for group in GROUPS}
 
 
 def measure(groups):
-    """Yields every figure of the groups as {"name", "value", "unit", "bar"}; raises if one cannot be measured."""
-    for group in groups:
-        for name, (value, unit) in group().items():
-            yield {"name": name, "value": value, "unit": unit, "bar": BARS.get(boards.whose_bar(name))}
+    """Yields every figure of the groups as {"name", "value", "unit", "bar"}, in their order; raises if one cannot be measured."""
+    timed = {group: group() for group in groups if group in TIMED}
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        counted = {group: pool.submit(group) for group in groups if group not in TIMED}
+        for group in groups:
+            for name, (value, unit) in (timed[group] if group in TIMED else counted[group].result()).items():
+                yield {"name": name, "value": value, "unit": unit, "bar": BARS.get(boards.whose_bar(name))}
 
 
 def as_line(figure, grew):

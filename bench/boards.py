@@ -34,7 +34,7 @@ sys.path.append(str(ROOT / "tests/e2e"))
 import wire  # noqa: E402
 from support import wired_as_it_can  # noqa: E402
 
-STEP = "robosync::layers::Mailboxes::take_announced("  # called at the start of each step
+STEP = "robosync::layers::ProcessingLayer::next_due("  # called at the end of the first step, and of others
 CLOCK_BEGINS = "robosync::port::start_tick("
 # The figures of the reference board whose bars apply to figures without their own.
 BARS = {"power_up_to_first_step": "firmware/power_up_to_program", "idle_second": "firmware/idle_second",

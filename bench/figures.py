@@ -301,7 +301,14 @@ def signature_figures():
 
 def ear_figures():
     """What a board with a microphone would need for 20 ms of sound: the most expensive of many blocks."""
-    return {"ear/block": (max(run(BUILT / "bench_ear").spans("mark_ear_begin", "mark_ear_end")), "insn")}
+    marks = run(BUILT / "bench_ear")
+    return {f"ear/{name}": (max(marks.spans(f"mark_{mark}_begin", f"mark_{mark}_end")), "insn")
+            for name, mark in (("block", "ear"), ("spectrum", "spectrum"))}
+
+
+def algorithms_figures():
+    """What own_words does for 20 ms of sound while it recognises a word: the most expensive of many blocks."""
+    return {"algorithms/own_words": (max(run(BUILT / "bench_words").spans("mark_words_begin", "mark_words_end")), "insn")}
 
 
 def power_up_figures():

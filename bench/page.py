@@ -60,6 +60,12 @@ Path of a reading:
 
 * `path/…` has no single expensive part. A quarter of the path to the command goes to three commands, which are decoded, queued
   and handed over. Another quarter goes to threads and their context switches. The rest is the step's bookkeeping for rules.
+* `path/step_quiet` is a reading of a fed channel that fires nothing, from the call that feeds it to the end of the step. It is on
+  the same side of each constant that rules compare the channel with as the reading before, so no rule is evaluated. This holds for
+  channels that rules only compare with constants ([architecture.md](architecture.md#what-a-step-costs)).
+  `path/step_quiet_crossing` is the worst case: the reading crosses the constant of a rule, which is evaluated and does not fire.
+  A behaviour's thread is released for it, as for each reading of a channel with another use.
+* `path/load_…` includes the search for these constants.
 * `path/smooth_sample` is `vm/W3_natural` with the largest window, 32 samples, in the order that moves most of them. It includes
   the bands.
 
@@ -72,11 +78,13 @@ Firmware:
 * `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those
   alone.
 * `i2c/…` is a sample of a motion sensor where the chip's I2C master works by itself: the driver's call that asks for it, the bus
-  interrupts, and the driver's call that takes the bytes. QEMU has neither the master nor the sensor. So a test plays both through the
-  debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The sensor's thread wakes twice for a
-  sample; the most that each takes, `wake_by_timer` of the board's `costs.def`, is added: 900 in all. On the reference board,
-  whose bus is bit-banged, a sample does keep the processor busy (`firmware/idle_second_paper_i2c`), and lower threads wait.
-* `ear/block` is the work for 20 ms of sound at the most expensive pitch, on the micro:bit V2.
+  interrupts, and the driver's call that takes the bytes. QEMU has neither the master nor the sensor. So a test plays both through
+  the debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The sensor's thread wakes twice
+  for a sample; the most that each takes, `wake_by_timer` of the board's `costs.def`, is added: 900 in all. On the reference
+  board, whose bus is bit-banged, a sample does keep the processor busy (`firmware/idle_second_paper_i2c`), and lower threads
+  wait.
+* `ear/block` is the work for 20 ms of sound at the most expensive pitch, on the micro:bit V2; `ear/spectrum` that for its spectrum, which
+  `own_words` reads.
 
 Safety and link:
 

@@ -2,6 +2,7 @@
 #include "companion/shown_word.hpp"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace robosync::companion {
@@ -17,6 +18,13 @@ ShownWord::ShownWord(std::string quiet, const Arguments& arguments)
 void ShownWord::heard(const std::string& word) {
   now_ = word;
   until_ = time_ + shown_for_;
+  tell();
+}
+
+void ShownWord::show(const std::string& word) {
+  until_ = std::numeric_limits<long>::max();
+  if (word == now_) return;
+  now_ = word;
   tell();
 }
 

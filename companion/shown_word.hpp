@@ -13,6 +13,8 @@ public:
   ShownWord(std::string quiet, const Arguments& arguments);
 
   void heard(const std::string& word);
+  // The word that is shown now, until another call.
+  void show(const std::string& word);
   // Call it after each piece of sound, with its length.
   void pass(long ms);
 

@@ -10,15 +10,14 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <system_error>
 
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "companion/bands.hpp"
-#include "companion/matcher.hpp"
-#include "companion/sound_source.hpp"
-#include "companion/utterances.hpp"
+#include "companion/distances.hpp"
+#include "companion/hearing.hpp"
 
 namespace robosync::companion {
 namespace {
@@ -27,10 +26,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kWanted = 3;  // samples of a word, at least
 constexpr Distance kSame = 650;     // two samples further apart are different words
-constexpr std::size_t kPerSecond = kSoundRate / kHop;
+constexpr std::size_t kPerSecond = 1000 / kFrameMs;
 constexpr std::size_t kLongestRecording =
-    10 * kPerSecond;                     // frames; also the longest pause before a word
-constexpr std::size_t kQuietAfter = 24;  // frames added to a recording that ends with its word
+    10 * kPerSecond;  // frames; also the longest pause before a word
+constexpr unsigned kBitsUsed = drivers::kBandsInValue * drivers::kBandBits;  // of a frame's value
+constexpr std::size_t kQuietAfter = 20;  // frames added to a recording that ends with its word
 
 [[noreturn]] void refuse(const std::string& why) {
   throw Failure(Exit::asked_wrongly, why);
@@ -58,7 +58,10 @@ std::vector<TaughtWord> parsed(const std::string& file) {
 }
 
 // Writes a new file and renames it, so that a reader, even after a power cut, finds either the old file or the new one.
-void save(const std::string& file, const std::vector<TaughtWord>& words) {
+void save(const std::string& file, std::vector<TaughtWord> words) {
+  const std::vector<Allowed> allowed = allowed_distances(words);
+  for (std::size_t i = 0; i < words.size(); ++i)
+    words[i].most = allowed[i].most;
   const std::string text = write_words(words), beside = file + ".new";
   const int out = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
   bool fine = out >= 0;
@@ -83,31 +86,32 @@ auto find_word(std::vector<TaughtWord>& words, const std::string& name) {
 
 // ---- recordings
 
-class Listener {
-public:
-  explicit Listener(const std::string& name) : name_(name), source_(open_sound(name, true)) {}
+// What was said last: each level below the loudest.
+Sample said(const own_words_ear& ear, std::size_t frames) {
+  const std::span<const own_words_frame> all(ear.said, frames);
+  std::uint32_t loudest = 0;
+  const auto each = [](const own_words_frame& frame, auto take) {
+    for (std::size_t value = 0; value < OWN_WORDS_VALUES; ++value)
+      for (unsigned shift = 0; shift < kBitsUsed; shift += drivers::kBandBits)
+        take(value, shift, frame.values[value] >> shift & OWN_WORDS_MOST_LEVEL);
+  };
+  for (const own_words_frame& frame : all)
+    each(frame,
+         [&](std::size_t, unsigned, std::uint32_t level) { loudest = std::max(loudest, level); });
+  Sample sample(frames, own_words_frame{});
+  for (std::size_t i = 0; i < frames; ++i)
+    each(all[i], [&](std::size_t value, unsigned shift, std::uint32_t level) {
+      sample[i].values[value] |= (loudest - level) << shift;
+    });
+  return sample;
+}
 
-  // The levels of the next 16 ms; false: the sound is over.
-  bool next(Levels& levels) {
-    std::array<std::int16_t, kHop> block{};
-    const std::size_t count = source_->read(block);
-    levels = bands_.hear(block);
-    return count != 0;
-  }
-  const std::string& name() const { return name_; }
-
-private:
-  std::string name_;
-  std::unique_ptr<SoundSource> source_;
-  Bands bands_;
-};
-
-std::vector<Levels> all_of(Listener& listener) {
-  std::vector<Levels> frames;
-  for (Levels levels; listener.next(levels);) {
+Sample all_of(Hearing& hearing, const std::string& name) {
+  Sample frames;
+  for (own_words_frame frame; hearing.next(frame);) {
     if (frames.size() == kLongestRecording)
-      refuse(listener.name() + " is longer than 10 s: record the word alone, once in each file");
-    frames.push_back(levels);
+      refuse(name + " is longer than 10 s: record the word alone, once in each file");
+    frames.push_back(frame);
   }
   frames.resize(frames.size() + kQuietAfter);
   return frames;
@@ -116,30 +120,33 @@ std::vector<Levels> all_of(Listener& listener) {
 // The single word that is said in a recording.
 Sample sample_of(const std::string& recording) {
   if (!is_file(recording)) throw Failure(Exit::outside, "there is no file " + recording);
-  Listener listener(recording);
-  const std::vector<Levels> frames = all_of(listener);
-  Utterances utterances;
-  for (const Levels& levels : frames)
-    utterances.learn(levels);
+  Hearing hearing(recording, true);
+  const Sample frames = all_of(hearing, recording);
+  own_words_ear ear;
+  own_words_begin(&ear);
+  for (const own_words_frame& frame : frames)
+    own_words_learn(&ear, &frame);
   std::vector<Sample> found;
   bool too_long = false;
-  for (const Levels& levels : frames) {
-    if (utterances.hear(levels)) found.push_back(below_loudest(utterances.last()));
-    too_long = too_long || utterances.was_too_long();
+  for (const own_words_frame& frame : frames) {
+    if (const std::uint32_t count = own_words_hear(&ear, &frame); count != 0)
+      found.push_back(said(ear, count));
+    too_long = too_long || ear.was_too_long != 0;
   }
   if (found.size() == 1) return found.front();
   if (found.size() > 1)
     refuse(recording + ": " + std::to_string(found.size()) +
            " words are heard in it: record the word alone, without a pause in it");
-  refuse(recording + (too_long ? ": what is said in it takes more than 2 s: a word is shorter"
+  refuse(recording + (too_long ? ": what is said in it takes more than 1.8 s: a word is shorter"
                                : ": no word is heard in it: it is silent, too noisy or too short"));
 }
 
 // Waits until somebody has said the word `count` times.
 std::vector<Sample> samples_of_microphone(const std::string& name, const std::string& word,
                                           std::size_t count) {
-  Listener listener(name);
-  Utterances utterances;
+  Hearing hearing(name, true);
+  own_words_ear ear;
+  own_words_begin(&ear);
   std::vector<Sample> samples;
   const auto ask = [&] {
     std::printf("say `%s` (%zu of %zu)\n", word.c_str(), samples.size() + 1, count);
@@ -147,15 +154,16 @@ std::vector<Sample> samples_of_microphone(const std::string& name, const std::st
   };
   ask();
   std::size_t waited = 0, after = 0;
-  for (Levels levels; samples.size() < count;) {
-    if (!listener.next(levels) && ++after == kQuietAfter)
+  for (own_words_frame frame; samples.size() < count;) {
+    if (!hearing.next(frame) && ++after == kQuietAfter)
       refuse(name + ": the word is heard " + std::to_string(samples.size()) +
              " times in it, and not " + std::to_string(count) + " times");
     if (++waited == kLongestRecording)
       throw Failure(Exit::outside, "nothing that could be a word was heard for 10 s: is " + name +
                                        " the microphone? (`arecord -L` lists them)");
-    if (!utterances.hear(levels)) continue;
-    samples.push_back(below_loudest(utterances.last()));
+    const std::uint32_t frames = own_words_hear(&ear, &frame);
+    if (frames == 0) continue;
+    samples.push_back(said(ear, frames));
     waited = 0;
     if (samples.size() < count) ask();
   }
@@ -250,7 +258,7 @@ void teach(const Arguments& arguments) {
   }
   check_samples(*word, known, from);
   save(file, words);
-  const auto allowed = allowed_distances(words, kUsualStrict);
+  const auto allowed = allowed_distances(words);
   print_word(*word, allowed[static_cast<std::size_t>(word - words.begin())], words);
   warn(words, allowed);
 }
@@ -265,7 +273,7 @@ void forget(const std::string& file, const std::string& name) {
 
 void list(const std::string& file) {
   const std::vector<TaughtWord> words = load_words(file);
-  const auto allowed = allowed_distances(words, kUsualStrict);
+  const auto allowed = allowed_distances(words);
   for (std::size_t i = 0; i < words.size(); ++i)
     print_word(words[i], allowed[i], words);
   warn(words, allowed);

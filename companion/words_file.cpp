@@ -3,14 +3,20 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 
 namespace robosync::companion {
 namespace {
 
-constexpr std::string_view kFirstLine = "robosync words 1";
+constexpr std::string_view kFirstLine = "robosync words 2";
 constexpr std::string_view kFirstLineOfAny = "robosync words ";
+constexpr std::string_view kOldFirstLine = "robosync words 1";
 constexpr std::string_view kHex = "0123456789abcdef";
+// A level is a character: these and the next 63.
+constexpr char kNoLevel = '0', kMostLevel = kNoLevel + OWN_WORDS_MOST_LEVEL;
+constexpr unsigned kLevelBits = 6;
+constexpr std::size_t kBands = OWN_WORDS_BANDS, kInValue = kBands / OWN_WORDS_VALUES;
 constexpr std::string_view kSum = "sum ";
 constexpr std::size_t kSumDigits = 8, kSumLine = kSum.size() + kSumDigits + 1;
 
@@ -38,6 +44,10 @@ std::optional<std::string_view> after(std::string_view line, std::string_view ke
   if (!line.starts_with(key) || line.size() <= key.size() || line[key.size()] != ' ')
     return std::nullopt;
   return line.substr(key.size() + 1);
+}
+
+unsigned level_of(const own_words_frame& frame, std::size_t band) {
+  return frame.values[band / kInValue] >> (band % kInValue * kLevelBits) & OWN_WORDS_MOST_LEVEL;
 }
 
 class Reader {
@@ -75,6 +85,8 @@ private:
     if (!first.starts_with(kFirstLineOfAny))
       return fail("it is no file of words: its first line is not `" + std::string(kFirstLine) +
                   "`");
+    if (first == kOldFirstLine)
+      return fail("its words were taught to an earlier version of RoboSync: teach them again");
     if (first != kFirstLine) return fail("it was made by another version of RoboSync");
     const std::size_t length = text.size() - std::min(text.size(), kSumLine);
     if (with_sum(std::string(text.substr(0, length))) != text)
@@ -92,13 +104,23 @@ private:
       fail("a line begins with `word` or `sample` here");
   }
 
-  void add_word(std::string_view name) {
+  // NAME DISTANCE
+  void add_word(std::string_view text) {
     check_last();
+    const std::size_t space = std::min(text.find(' '), text.size());
+    const std::string_view name = text.substr(0, space),
+                           most = text.substr(std::min(space + 1, text.size()));
+    std::uint32_t distance = 0;
+    const auto read = std::from_chars(most.data(), most.data() + most.size(), distance);
+    if (read.ec != std::errc{} || read.ptr != most.data() + most.size() ||
+        distance > OWN_WORDS_MOST_DISTANCE)
+      return fail("after a word stands its distance, 0 to " +
+                  std::to_string(OWN_WORDS_MOST_DISTANCE));
     if (!can_be_word(name)) return fail("this cannot be the name of a word");
     if (words_.size() == kMostWords) return fail("there are more words than there is room for");
     for (const TaughtWord& word : words_)
       if (same_word(word.name, name)) return fail("this word stands here twice");
-    words_.push_back({std::string(name), {}});
+    words_.push_back({std::string(name), {}, distance});
   }
 
   void add_sample(std::string_view count) {
@@ -111,18 +133,19 @@ private:
                   std::to_string(kMostFrames) + " lines");
     if (words_.back().samples.size() == kMostSamples)
       return fail("a word has " + std::to_string(kMostSamples) + " samples at most");
-    Sample& sample = words_.back().samples.emplace_back(frames);
+    Sample& sample = words_.back().samples.emplace_back(frames, own_words_frame{});
     for (std::size_t i = 0; i < frames && trouble_.empty(); ++i)
-      read_levels(sample[i]);
+      read_frame(sample[i]);
   }
 
-  void read_levels(Levels& levels) {
+  void read_frame(own_words_frame& frame) {
     const std::string_view line = next();
-    if (line.size() != 2 * kBands || line.find_first_not_of(kHex) != std::string_view::npos)
-      return fail("a line of a sample has " + std::to_string(2 * kBands) + " digits, 0 to f");
+    const auto is_level = [](char c) { return c >= kNoLevel && c <= kMostLevel; };
+    if (line.size() != kBands || !std::ranges::all_of(line, is_level))
+      return fail("a line of a sample has " + std::to_string(kBands) + " characters, 0 to o");
     for (std::size_t band = 0; band < kBands; ++band)
-      levels[band] =
-          static_cast<std::uint8_t>(kHex.find(line[2 * band]) * 16 + kHex.find(line[2 * band + 1]));
+      frame.values[band / kInValue] |= static_cast<std::uint32_t>(line[band] - kNoLevel)
+                                       << (band % kInValue * kLevelBits);
   }
 
   void check_last() {
@@ -144,17 +167,29 @@ ReadWords read_words(std::string_view text) {
 std::string write_words(const std::vector<TaughtWord>& words) {
   std::string text = std::string(kFirstLine) + "\n";
   for (const TaughtWord& word : words) {
-    text += "word " + word.name + "\n";
+    text += "word " + word.name + " " + std::to_string(word.most) + "\n";
     for (const Sample& sample : word.samples) {
       text += "sample " + std::to_string(sample.size()) + "\n";
-      for (const Levels& levels : sample) {
-        for (const std::uint8_t level : levels)
-          text += {kHex[level / 16U], kHex[level % 16U]};
+      for (const own_words_frame& frame : sample) {
+        for (std::size_t band = 0; band < kBands; ++band)
+          text += static_cast<char>(kNoLevel + level_of(frame, band));
         text += '\n';
       }
     }
   }
   return with_sum(std::move(text));
+}
+
+std::vector<std::int32_t> constants_of(const std::vector<TaughtWord>& words) {
+  std::vector<std::int32_t> constants;
+  for (const TaughtWord& word : words)
+    for (const Sample& sample : word.samples) {
+      constants.push_back(own_words_header(static_cast<std::uint32_t>(&word - words.data()),
+                                           static_cast<std::uint32_t>(sample.size()), word.most));
+      for (const own_words_frame& frame : sample)
+        constants.insert(constants.end(), std::begin(frame.values), std::end(frame.values));
+    }
+  return constants;
 }
 
 std::string with_sum(std::string text) {

@@ -1,24 +1,24 @@
-// The file format of taught words (`rsc teach`; docs/algorithms.md#the-file-of-words). The file does not contain their sound, but
-// the loudness of each frequency band in each 16 ms of a sample. This uses only the standard library, so that rsc can use it,
-// too: it needs the names.
+// The file format of taught words (`rsc teach`; docs/algorithms.md#the-file-of-words), and the constants that the module own_words
+// makes of them. The file does not contain their sound, but the loudness of each frequency band in each 20 ms of a sample. This
+// uses only the standard library and own_words.h, so that rsc can use it, too.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime-m4/algorithms/own_words.h"
+
 namespace robosync::companion {
 
-constexpr std::size_t kBands = 20;
-// In half decibels: in a sample, below its loudest band, at most 255; in an utterance, above the softest.
-using Levels = std::array<std::uint8_t, kBands>;
-using Sample = std::vector<Levels>;
+// Its levels are below its loudest one.
+using Sample = std::vector<own_words_frame>;
 
-constexpr std::size_t kMostWords = 24, kMostSamples = 8;    // samples of each word
-constexpr std::size_t kLeastFrames = 8, kMostFrames = 125;  // of a sample: 128 ms to 2 s
+constexpr std::size_t kMostWords = 24, kMostSamples = 8;  // samples of each word
+// Of a sample: 140 ms to 1.8 s.
+constexpr std::size_t kLeastFrames = OWN_WORDS_LEAST_FRAMES, kMostFrames = OWN_WORDS_MOST_FRAMES;
 constexpr std::size_t kLongestName = 31;
 constexpr std::size_t kLargestFile = 1 << 20;
 constexpr std::string_view kNoWord = "none";  // the value when none of them was heard
@@ -26,6 +26,8 @@ constexpr std::string_view kNoWord = "none";  // the value when none of them was
 struct TaughtWord {
   std::string name;
   std::vector<Sample> samples;
+  std::uint32_t most =
+      0;  // the largest distance at which something is still this word, in thousandths
 };
 
 struct ReadWords {
@@ -37,6 +39,8 @@ struct ReadWords {
 // Never throws, whatever `text` is.
 [[nodiscard]] ReadWords read_words(std::string_view text);
 [[nodiscard]] std::string write_words(const std::vector<TaughtWord>& words);
+// What the module gets: the samples of all words, one after the other.
+[[nodiscard]] std::vector<std::int32_t> constants_of(const std::vector<TaughtWord>& words);
 // Appends the last line, the checksum, which tells an intact file from a damaged one.
 [[nodiscard]] std::string with_sum(std::string text);
 

@@ -45,6 +45,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/boards.cpp
   config/devices.cpp
   config/drive.cpp
+  config/encoder.cpp
   config/entries.cpp
   config/fields.cpp
   config/json_format.cpp
@@ -52,6 +53,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/json_reader.cpp
   config/names.cpp
   config/panel.cpp
+  config/pictures.cpp
   config/robot.cpp
   config/robot_reader.cpp
   config/robot_vocabulary.cpp

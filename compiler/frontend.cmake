@@ -30,9 +30,13 @@ add_dependencies(robosync_compiler robosync_grammar)
 add_dependencies(robosync_compiler_small robosync_grammar)
 target_include_directories(robosync_compiler_small SYSTEM PRIVATE ${generated})
 # Their style is not ours to fix. Under the sanitizers the parser takes four times as long to compile with -O1 as with -O0.
-set_source_files_properties(
-  ${generated}/grammar/rsl_grammar.cpp ${generated}/grammar/rsl_lexer.cpp
-  PROPERTIES COMPILE_OPTIONS "$<IF:$<BOOL:${ROBOSYNC_SANITIZE}>,-O0,-O3>;-Wno-conversion;-Wno-sign-conversion;-Wno-shadow")
+# Otherwise it is built for size: with -O3 it is 46 KB larger, and `rsc check` a quarter faster.
+foreach(part_and_level "grammar;-Os" "lexer;-O3")
+  list(GET part_and_level 0 part)
+  list(GET part_and_level 1 level)
+  set_source_files_properties(${generated}/grammar/rsl_${part}.cpp PROPERTIES
+    COMPILE_OPTIONS "$<IF:$<BOOL:${ROBOSYNC_SANITIZE}>,-O0,${level}>;-Wno-conversion;-Wno-sign-conversion;-Wno-shadow")
+endforeach()
 
 target_sources(robosync_compiler PRIVATE
   ${generated}/grammar/rsl_grammar.cpp

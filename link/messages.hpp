@@ -8,7 +8,7 @@
 
 namespace robosync::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 12;
+inline constexpr std::uint8_t kProtocolVersion = 13;
 inline constexpr std::size_t kMaxPayload = 240;
 inline constexpr std::size_t kNameLength = 16;  // NUL-padded
 using Name = std::array<char, kNameLength>;
@@ -45,10 +45,11 @@ struct HelloReply {
   Name robot;                 // the name that the running program gives it; empty: none
   std::uint32_t arena_begin;  // address of the memory for programs
   std::uint32_t arena_bytes;
-  std::uint32_t arena_used;   // by the running program, including its image
-  std::uint32_t step_budget;  // M4 instructions of VM code in one step
-  std::uint32_t drivers;      // bit d: driver d of vm/drivers.def is present
-  std::uint32_t image_bytes;  // of the running image
+  std::uint32_t arena_used;    // by the running program, including its image
+  std::uint32_t step_budget;   // M4 instructions of VM code in one step
+  std::uint32_t drivers;       // bit d: driver d of vm/drivers.def is present
+  std::uint32_t more_drivers;  // … bit d: driver 32 + d
+  std::uint32_t image_bytes;   // of the running image
   ProgramHash program_hash;
   std::uint16_t receive_window;  // bytes of data the board can take before it must reply
   std::uint8_t running;          // 1: a program runs
@@ -56,6 +57,10 @@ struct HelloReply {
   Pairing pairing;
   std::array<std::uint8_t, 3> reserved{};
 };
+
+constexpr std::uint64_t drivers_of(const HelloReply& board) {
+  return std::uint64_t{board.more_drivers} << 32 | board.drivers;
+}
 
 // The reply to a request that names a session, if another session has the line, or none has.
 struct Busy {

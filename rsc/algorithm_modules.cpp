@@ -10,6 +10,7 @@
 #include "companion/words_file.hpp"
 #include "rsc/companion_modules.hpp"
 #include "runtime-m4/algorithms/judge.hpp"
+#include "runtime-m4/algorithms/own_words.h"
 #include "runtime-m4/module_files/registry.hpp"
 
 namespace robosync::tool {
@@ -24,13 +25,28 @@ static_assert(ROBOSYNC_NUMBER == number_of(vm::Dimension::number) &&
               ROBOSYNC_PERCENT == number_of(vm::Dimension::percent) &&
               ROBOSYNC_HERTZ == number_of(vm::Dimension::frequency) &&
               ROBOSYNC_G == number_of(vm::Dimension::acceleration) &&
-              ROBOSYNC_DECIBEL == number_of(vm::Dimension::loudness));
+              ROBOSYNC_DECIBEL == number_of(vm::Dimension::loudness) &&
+              ROBOSYNC_MICROTESLA == number_of(vm::Dimension::magnetic_field));
 static_assert(ROBOSYNC_ONE == vm::kScale && ROBOSYNC_UNKNOWN == vm::kUnknown);
 
 std::optional<vm::Dimension> dimension(std::uint8_t unit) {
   if (unit == ROBOSYNC_AS_INPUT) return std::nullopt;
   if (unit == ROBOSYNC_COUNT) return vm::Dimension::number;
   return static_cast<vm::Dimension>(unit);
+}
+
+// In kilobytes besides the first one, with the usual parameters.
+std::uint8_t room_of(const robosync_module& module,
+                     const std::vector<compiler::ModuleParameter>& parameters) {
+  std::vector<std::int32_t> usual;
+  usual.reserve(parameters.size());
+  for (const compiler::ModuleParameter& parameter : parameters)
+    usual.push_back(parameter.usual);
+  const std::uint32_t bytes =
+      algorithms::scratch_at(module, usual.data()) + module.scratch_bytes(usual.data());
+  if (bytes <= ROBOSYNC_MOST_BYTES) return 0;
+  return static_cast<std::uint8_t>((bytes - ROBOSYNC_MOST_BYTES + ROBOSYNC_ROOM - 1) /
+                                   ROBOSYNC_ROOM);
 }
 
 compiler::AlgorithmModule described(const robosync_description& description) {
@@ -46,6 +62,9 @@ compiler::AlgorithmModule described(const robosync_description& description) {
                               output.least,
                               output.most,
                               {output.labels, output.labels + output.label_count}});
+    if (module.learns == 0 || output.label_count == 0) continue;
+    result.outputs.back().is_taught = true;
+    result.outputs.back().max = (output.label_count - 1) * vm::kScale;
   }
   for (std::size_t i = 0; i < module.parameters; ++i) {
     const robosync_parameter& parameter = description.parameters[i];
@@ -56,6 +75,10 @@ compiler::AlgorithmModule described(const robosync_description& description) {
   result.shortest_period_ms = module.shortest_period_ms;
   result.longest_period_ms = module.longest_period_ms;
   result.usual_period_ms = description.usual_period_ms;
+  if (module.learns != 0) {
+    result.room = room_of(module, result.parameters);
+    result.most_constants = ROBOSYNC_MOST_CONSTANTS;
+  }
   return result;
 }
 
@@ -89,6 +112,7 @@ compiler::WordsInFile words_in_file(const std::string& path) {
   compiler::WordsInFile found;
   for (companion::TaughtWord& word : read.words)
     found.words.push_back(std::move(word.name));
+  found.constants = companion::constants_of(read.words);
   return found;
 }
 

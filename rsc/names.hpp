@@ -41,10 +41,11 @@ inline constexpr std::array<std::string_view, static_cast<std::size_t>(vm::RuleK
   return fmt::format("{:02x}", fmt::join(hash, ""));
 }
 
-// "touch at address 0x70 on i2c bus 0"
+// "touch at address 0x70 on i2c bus 0"; on SPI, with its select pin in place of the address: "knob on spi bus 0, select pin 16,"
 [[nodiscard]] inline std::string name_on_bus(std::string_view sensor, unsigned address,
-                                             unsigned bus) {
-  return fmt::format("{} at address 0x{:02x} on i2c bus {}", sensor, address, bus);
+                                             unsigned bus, bool spi) {
+  return spi ? fmt::format("{} on spi bus {}, select pin {},", sensor, bus, address)
+             : fmt::format("{} at address 0x{:02x} on i2c bus {}", sensor, address, bus);
 }
 
 template <typename Enum, std::size_t N>

@@ -19,6 +19,7 @@
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/file_kind.hpp"
 #include "rsc/files.hpp"
 #include "rsc/judge.hpp"
 #include "runtime-m4/algorithms/judge.hpp"
@@ -49,9 +50,26 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
+// Read as a program, JSON would have errors, and even fixes, that damage it.
+void refuse_json(const std::string& file, const std::string& text) {
+  constexpr std::string_view kJson = ".json";
+  if (file.size() < kJson.size() ||
+      !compiler::ascii::same(std::string_view(file).substr(file.size() - kJson.size()), kJson))
+    return;
+  FileKind kind = kind_of_text(text);
+  if (kind == FileKind::other) kind = FileKind::configuration;
+  const std::string program = file.substr(0, file.size() - kJson.size()) + ".rsl";
+  throw Failure(Exit::program,
+                fmt::format("{} is {}, not a program: name the program{}", file, describe(kind),
+                            kind == FileKind::configuration
+                                ? ", such as " + program + "; both are then checked and mended"
+                                : std::string()));
+}
+
 compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules, const Texts& texts) {
   std::string text = texts.read(file);
+  refuse_json(file, text);
   const std::filesystem::path path = find_configuration(file, options.config, texts);
   compiler::Result result = compiler::compile({file == "-" ? "stdin" : file, std::move(text)},
                                               {path.string(), texts.read(path)},
@@ -63,6 +81,16 @@ compiler::Result compile(const std::string& file, const CompileOptions& options,
                                                .algorithms = algorithm_modules()});
   judge(result, options.judged);
   return result;
+}
+
+// A SAFETY has a name; a LIMIT that is one begins with its actuator.
+std::string name_of_safety(std::string_view text, compiler::Span span) {
+  constexpr std::string_view kSafety = "SAFETY";
+  const std::size_t line = text.rfind('\n', span.begin) + 1;  // 0 in the first line
+  const std::size_t begin = text.find_first_not_of(" \t", line);
+  const bool has_name = compiler::ascii::same(text.substr(begin, kSafety.size()), kSafety);
+  const std::size_t from = has_name ? span.begin : begin;
+  return std::string(text.substr(from, span.end - from));
 }
 
 constexpr std::array<std::string_view, policy::kWhose> kWhose = {
@@ -144,9 +172,14 @@ std::vector<std::string> names_of(const compiler::SourceMap& sources) {
 }
 
 Origin origin_of(const compiler::Result& result) {
-  Origin origin{names_of(result.sources), result.units, {}, {}};
+  Origin origin{names_of(result.sources), result.units, {}, {}, {}};
+  vm::Image image;
+  const bool there = vm::view_image(result.image, image);
   for (const compiler::Span& span : result.rules) {
     const compiler::SourceFile& file = result.sources.file(span.file);
+    const std::size_t rule = origin.rules.size();
+    const bool safety = there && image.rules[rule].kind == vm::RuleKind::safety;
+    origin.safety.push_back(safety ? name_of_safety(file.text(), span) : std::string());
     origin.rules.push_back(span.file == 0
                                ? std::string()
                                : fmt::format("{}:{}", file.name(), file.position(span.begin).line));
@@ -197,7 +230,7 @@ Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
     const policy::BoardMemory memory = memory_for(bytes);
-    Program program(std::move(bytes), file, memory, {{file}, {}, {}, {}});
+    Program program(std::move(bytes), file, memory, {{file}, {}, {}, {}, {}});
     if (options.judged == Judged::by_time) judge_time(program, file);  // the board checks memory
     return program;
   }

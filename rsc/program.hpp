@@ -70,6 +70,13 @@ struct Origin {
   std::vector<std::string> rules;
   // The lines that the image's line numbers refer to, if all are of one file.
   std::vector<std::string> lines;
+  // For each rule of the image: what names it in the source if it is a SAFETY rule, "pinched" or "LIMIT arms"; else empty.
+  std::vector<std::string> safety;
+
+  // Empty: it is no SAFETY rule, or there is no source.
+  [[nodiscard]] std::string safety_name(std::size_t rule) const {
+    return rule < safety.size() ? safety[rule] : std::string();
+  }
 };
 // The names of all files of a compilation.
 [[nodiscard]] std::vector<std::string> names_of(const compiler::SourceMap& sources);

@@ -234,8 +234,13 @@ void Runtime::obey() {
 }
 
 link::FeedResult Runtime::feed(const link::Feed& feed) {
-  if (!running_) return {link::FeedError::no_program, 0};
+  if (!running_.load(std::memory_order_relaxed)) return {link::FeedError::no_program, 0};
   return sensors_.feed(feed);
+}
+
+link::FeedResult Runtime::enqueue(const link::Feed& feed) {
+  if (!running_) return {link::FeedError::no_program, 0};
+  return sensors_.enqueue(feed);
 }
 
 void Runtime::fill_status(link::Status& status) const {

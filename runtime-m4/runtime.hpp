@@ -91,7 +91,10 @@ public:
 
   // A reading for a fed channel: now (at_us 0) or at a program time. Sensors with the driver
   // virtual_sensor or with period 0 are fed. The unknown value is a failed reading.
+  // From a thread that the program outranks: one for now has had its effect when this returns.
   link::FeedResult feed(const link::Feed& feed);
+  // From outside of all threads, as a simulation does: the program takes it when it runs on.
+  link::FeedResult enqueue(const link::Feed& feed);
 
   // Fills in everything except bad_frames and lost_events, which only the link knows.
   void fill_status(link::Status& status) const;

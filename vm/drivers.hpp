@@ -1,6 +1,7 @@
 // What the verifier, the board and rsc need to know about a driver, from vm/drivers.def.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "vm/image.hpp"
@@ -72,6 +73,9 @@ constexpr bool drives_channel(DriverId driver) {
 constexpr bool drives_screen(DriverId driver) {
   return pin_use(driver) == PinUse::screen;
 }
+constexpr bool is_servo(DriverId driver) {
+  return pin_use(driver) == PinUse::pulses || drives_channel(driver);
+}
 // Serial line 0 is the link's.
 inline constexpr std::uint8_t kFirstPlayerLine = 1;
 constexpr bool drives_player(DriverId driver) {
@@ -80,9 +84,12 @@ constexpr bool drives_player(DriverId driver) {
 constexpr bool drives_panel(DriverId driver) {
   return pin_use(driver) == PinUse::panel;
 }
-// All its lights have the same colour.
+// All lights of a strip have the same colour; it shows no pictures.
 constexpr bool is_strip(DriverId driver) {
   return driver == DriverId::ws2812_strip;
+}
+constexpr bool shows_pictures_on_a_panel(DriverId driver) {
+  return drives_panel(driver) && !is_strip(driver);
 }
 constexpr bool drives_wheels(DriverId driver) {
   return pin_use(driver) == PinUse::wheels;
@@ -99,8 +106,9 @@ constexpr bool drives_on(DriverId driver) {
 
 // How a driver's sensors are measured; nothing: they are fed, or it has no sensors. Echo: a pulse on an output, the sensor's
 // `bus` in the image, and how long its input is high after that. Adc: the voltage of an analog input. Sound: the board's
-// microphone.
-enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc, sound };
+// microphone. Spi: a transfer while its select pin, `address` in the image, is low. Part: another part of the board. Edges: those of
+// an input, `address` in the image, are counted; its `bus` is a second input, whose level gives the direction, or kNoSecondPin.
+enum class Bus : std::uint8_t { nothing, i2c, pin, echo, adc, sound, spi, part, edges };
 
 struct Sampling {
   Bus bus = Bus::nothing;
@@ -112,10 +120,13 @@ constexpr Sampling sampling_of(DriverId driver) {
   const auto computed = [] { return Sampling{}; };
   const auto i2c = [](unsigned, unsigned) { return Sampling{Bus::i2c}; };
   const auto i2c_once = [](unsigned, unsigned) { return Sampling{Bus::i2c, true}; };
+  const auto spi = [](unsigned) { return Sampling{Bus::spi}; };
   const auto pin = [] { return Sampling{Bus::pin}; };
   const auto echo = [] { return Sampling{Bus::echo}; };
   const auto adc = [] { return Sampling{Bus::adc}; };
   const auto sound = [] { return Sampling{Bus::sound, true}; };
+  const auto part = [] { return Sampling{Bus::part}; };
+  const auto edges = [] { return Sampling{Bus::edges}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case DriverId::name:                   \
@@ -149,6 +160,9 @@ constexpr bool is_asked_once(DriverId driver) {
 constexpr bool is_on_i2c(DriverId driver) {
   return bus_of(driver) == Bus::i2c;
 }
+constexpr bool is_on_spi(DriverId driver) {
+  return bus_of(driver) == Bus::spi;
+}
 constexpr bool is_on_pin(DriverId driver) {
   return bus_of(driver) == Bus::pin;
 }
@@ -159,14 +173,35 @@ constexpr bool is_by_echo(DriverId driver) {
 constexpr bool is_analog(DriverId driver) {
   return bus_of(driver) == Bus::adc;
 }
+constexpr bool counts_edges(DriverId driver) {
+  return bus_of(driver) == Bus::edges;
+}
+// Its `address` is a pin that is its own.
+constexpr bool reads_pin(DriverId driver) {
+  return is_on_pin(driver) || is_by_echo(driver) || is_analog(driver) || counts_edges(driver);
+}
+inline constexpr std::uint8_t kNoSecondPin = UINT8_MAX;
+constexpr bool has_second_input(const Sensor& sensor) {
+  return counts_edges(sensor.driver) && sensor.bus != kNoSecondPin;
+}
 // It has a position and a speed, also if a command says none: it can have a limit of acceleration.
 constexpr bool moves_at_a_speed(const Actuator& actuator) {
   if (actuator.driver == DriverId::virtual_motion) return actuator.pin != 0;
-  return actuator.driver == DriverId::servo || actuator.driver == DriverId::pca9685_servo;
+  return is_servo(actuator.driver);
 }
+// The inputs of a microphone from here on are its spectrum, which costs something of its own.
+inline constexpr unsigned kFirstOfSpectrum = 4;
 // The microphone of the board, which has at most one.
 constexpr bool is_microphone(DriverId driver) {
   return bus_of(driver) == Bus::sound;
+}
+// A part of the board that needs no wiring and no bus. Which one: the input of its channel (boards::Part).
+constexpr bool is_board_part(DriverId driver) {
+  return bus_of(driver) == Bus::part;
+}
+// There is no such sensor that could be wired.
+constexpr bool is_of_board(DriverId driver) {
+  return is_microphone(driver) || is_board_part(driver);
 }
 // It takes a single measurement on request, which takes a while and may find nothing.
 constexpr bool measures_when_told(DriverId driver) {
@@ -174,7 +209,8 @@ constexpr bool measures_when_told(DriverId driver) {
 }
 // If its device does not answer, there is no new reading, and the last one grows old.
 constexpr bool may_be_silent(DriverId driver) {
-  return is_on_i2c(driver) || is_by_echo(driver) || is_analog(driver) || is_microphone(driver);
+  return is_on_i2c(driver) || is_on_spi(driver) || is_by_echo(driver) || is_analog(driver) ||
+         is_of_board(driver) || counts_edges(driver);
 }
 
 // A chip that makes the pulses of servos. It has no readings: it is among the sensors so that its bus has one user at a time, and
@@ -202,12 +238,29 @@ inline constexpr std::uint16_t kServoFrameMs = 20;
 inline constexpr std::uint16_t kFirstChipAddress = 0x40;
 inline constexpr std::uint16_t kAllChipsAddress = 0x70;
 
+// An SPI transfer: it writes one byte, and reads at most two.
+inline constexpr std::size_t kMostSpiBytes = 3;
+
 // The echoes of one burst must have died away before the next one.
 inline constexpr std::uint16_t kMinEchoPeriodMs = 60;
 // A microphone is sampled as often as there is a new block of sound (runtime-m4/drivers/ear.hpp).
 inline constexpr std::uint16_t kSoundPeriodMs = 20;
 // A VL53L0X takes some 33 ms from one result to the next; this leaves a margin.
 inline constexpr std::uint16_t kMinRangingPeriodMs = 50;
+
+// Encoders. Each edge is an interrupt: so a board counts at most kEdgesPerMs of each encoder, and has to be asked at least every
+// kMostEncoderPeriodMs, as all the edges of a period may come at once (runtime-m4/policy/rules.hpp).
+inline constexpr unsigned kMaxEncoders = 2;  // of a program
+inline constexpr unsigned kEdgesPerMs = 4;
+inline constexpr std::uint16_t kMostEncoderPeriodMs = 50;
+inline constexpr unsigned kSpeedParts = 16;  // a count of speed is this part of an edge per second
+// Which of the program's encoders it is.
+constexpr unsigned encoder_number(const Image& image, std::size_t sensor) {
+  unsigned number = 0;
+  for (std::size_t s = 0; s < sensor; ++s)
+    number += counts_edges(image.sensors[s].driver) ? 1 : 0;
+  return number;
+}
 
 // The shortest period at which a sensor with this driver gives readings; 0: any.
 constexpr std::uint16_t min_period_ms(DriverId driver) {
@@ -235,10 +288,11 @@ constexpr bool is_panel(const Actuator& actuator) {
   return true;
 }
 
-// How many samples a program discards at its start: one that measures on request may hold a result of any age, and a microphone
-// is loud while its voltage settles.
+// How many samples a program discards at its start: one that measures on request may hold a result of any age, which a part of
+// the board gives twice, and a microphone is loud while its voltage settles.
 constexpr std::uint8_t first_samples_discarded(DriverId driver) {
   if (is_microphone(driver)) return 6;
+  if (is_board_part(driver)) return 2;
   return measures_when_told(driver) ? 1 : 0;
 }
 

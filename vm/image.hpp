@@ -94,6 +94,9 @@ enum class Release : std::uint8_t { hold, rest, coast, count_ };
 // Sensor::bus of a sensor on a pin: the level there that reads as 1.
 enum class ActiveLevel : std::uint8_t { low, high, count_ };
 
+// Sensor::first_input of a spi_register: what its registers hold, high byte first unless it ends in `le`.
+enum class SpiFormat : std::uint8_t { uint16, int16, uint16le, int16le, uint8, int8, count_ };
+
 // Actuator::bus of a virtual_motion; its pin is its usual speed, in whole units per second (0: a
 // command takes as long as it says).
 enum class VirtualMotion : std::uint8_t {
@@ -165,31 +168,52 @@ static_assert(sizeof(ImageHeader) == 68);
 enum class TraitKind : std::uint8_t {
   name,  // `value`: the name of the robot that the image is for, in the strings; without it, any with that board
   acceleration,  // `value`: the limit of an actuator, in whole units per second squared
+  pulse_at_min,  // `value`: a servo's pulse at the lower end of its range, in microseconds
+  pulse_at_max,  // … at the upper end
   count_
 };
 
-// What few robots have, so that the others pay nothing for it: the name first, then accelerations in the order of their actuators.
+// What few robots have, so that the others pay nothing for it: in the order of the kinds, and of the actuators in each.
 struct Trait {
   std::uint16_t value;
-  std::uint8_t actuator;  // of an acceleration; else 0
+  std::uint8_t actuator;  // that has it; 0 for the name
   TraitKind kind;
 };
 static_assert(sizeof(Trait) == 4);
 
+// The pulses at the ends of a servo's range, in microseconds. With the longer one first, it turns the other way. Those of an image
+// without traits for them, which are also the limits for any servo.
+struct ServoPulses {
+  std::uint16_t at_min = 500;
+  std::uint16_t at_max = 2500;
+  bool operator==(const ServoPulses&) const = default;
+};
+inline constexpr ServoPulses kServoPulses;
+constexpr ServoPulses pulses_of(std::span<const Trait> traits, std::size_t actuator) {
+  ServoPulses pulses;
+  for (const Trait& trait : traits) {
+    if (trait.actuator != actuator) continue;
+    if (trait.kind == TraitKind::pulse_at_min) pulses.at_min = trait.value;
+    if (trait.kind == TraitKind::pulse_at_max) pulses.at_max = trait.value;
+  }
+  return pulses;
+}
+
 // For an algorithm, `bus` is the number of its module in the firmware, `address` the index of its
 // parameters in the constants, and `first_input` the first channel that it reads, which belongs to an
-// earlier sensor. Channel::input of its channels is the number of the module's output. For a servo chip, which has no
-// channels, `first_input` is the board's pin at the chip's enable input.
+// earlier sensor. Channel::input of its channels is the number of the module's output. `room` is how much memory its module has
+// besides the first kilobyte, in kilobytes. For a servo chip, which has no channels, `first_input` is the board's pin at the chip's
+// enable input. For a spi_register, it is the SpiFormat.
 struct Sensor {
   std::uint16_t name;  // offset in the strings
   DriverId driver;
   std::uint8_t bus;
-  std::uint16_t address;    // I2C address or pin
+  std::uint16_t address;    // I2C address or pin; on SPI, the select pin
   std::uint16_t period_ms;  // between two samples; 0: only fed
   std::uint8_t first_channel;
   std::uint8_t channel_count;
-  std::uint8_t first_input;  // for an algorithm or a servo chip; else 0
-  std::uint8_t reserved;
+  std::uint8_t first_input;  // for an algorithm, a servo chip or a spi_register; else 0
+  std::uint8_t room;         // for an algorithm; else 0
 };
 static_assert(sizeof(Sensor) == 12);
 

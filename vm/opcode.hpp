@@ -64,7 +64,19 @@ enum class Flow : std::uint8_t {
 };
 
 // The effects of an instruction besides writing to the frame.
-enum class Effect : std::uint8_t { none, division, event, set, param, command, log, alert, halt };
+enum class Effect : std::uint8_t {
+  none,
+  division,
+  event,
+  draw,
+  clock,
+  set,
+  param,
+  command,
+  log,
+  alert,
+  halt
+};
 
 struct OpcodeInfo {
   std::string_view name;
@@ -172,6 +184,8 @@ constexpr unsigned output_words(Effect effect) {
     case Effect::none:
     case Effect::division:
     case Effect::event:
+    case Effect::draw:
+    case Effect::clock:
     case Effect::set:
       return 0;
     case Effect::param:

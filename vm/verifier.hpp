@@ -37,7 +37,7 @@ struct Limits {
   std::uint8_t behaviors = kMaxBehaviors;
   std::uint8_t sensors = 255;
   std::uint8_t actuators = kMaxActuators;
-  std::uint32_t drivers = 0xFFFFFFFF;  // bit d: driver d is in this firmware
+  std::uint64_t drivers = ~std::uint64_t{0};  // bit d: driver d is in this firmware
 };
 
 struct Verdict {

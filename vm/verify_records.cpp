@@ -7,6 +7,7 @@
 
 #include "vm/drive.hpp"
 #include "vm/drivers.hpp"
+#include "vm/pictures.hpp"
 #include "vm/timers.hpp"
 #include "vm/verification.hpp"
 
@@ -31,6 +32,7 @@ struct Walk {
   std::uint32_t servo_chips = 0;
   std::uint32_t displays = 0;
   std::uint32_t microphones = 0;
+  std::uint32_t encoders = 0;
   std::uint32_t drives = 0;
 };
 
@@ -43,7 +45,7 @@ constexpr DriverKind kDriverKinds[] = {
 #undef SENSOR_DRIVER
 #undef ACTUATOR_DRIVER
 };
-static_assert(std::size(kDriverKinds) <= 32, "one bit each in Limits::drivers");
+static_assert(std::size(kDriverKinds) <= 64, "one bit each in Limits::drivers");
 
 constexpr std::array kDimensions = {
 #define DIMENSION(name, unit, doc) Dimension::name,
@@ -99,10 +101,9 @@ Refusal check_algorithm(const Sensor& sensor) {
 // Is `pin` used by one of the first `count` sensors?
 bool is_of_sensor(const Image& image, std::uint32_t pin, std::size_t count) {
   for (const Sensor& sensor : image.sensors.first(count)) {
-    const bool echo = is_by_echo(sensor.driver);
-    const bool has_pin = echo || is_on_pin(sensor.driver) || is_analog(sensor.driver);
-    if (sensor.address == pin && has_pin) return true;
-    if (echo && sensor.bus == pin) return true;
+    if (sensor.address == pin && (reads_pin(sensor.driver) || is_on_spi(sensor.driver)))
+      return true;
+    if ((is_by_echo(sensor.driver) || has_second_input(sensor)) && sensor.bus == pin) return true;
     if (is_servo_chip(sensor.driver) && sensor.first_input == pin) return true;
   }
   return false;
@@ -117,11 +118,35 @@ Refusal check_echo(Walk& walk, const Sensor& sensor, std::size_t index) {
   return good_or(Refusal::bad_value, sensor.period_ms >= kMinEchoPeriodMs);
 }
 
-// An analog sensor does not share its pin, which may be one that the board can drive.
-Refusal check_analog(Walk& walk, const Sensor& sensor, std::size_t index) {
+// A sensor does not share the pin that it reads, which may be one that the board can drive.
+Refusal check_pin(Walk& walk, const Sensor& sensor, std::size_t index) {
   walk.reads_pins = true;
   if (is_of_sensor(walk.image, sensor.address, index)) return Refusal::shared_pin;
-  return good_or(Refusal::bad_value, sensor.period_ms > 0 && sensor.bus == 0);
+  const bool reads = is_analog(sensor.driver) ? sensor.bus == 0
+                                              : is_enumerator(static_cast<ActiveLevel>(sensor.bus));
+  return good_or(Refusal::bad_value, sensor.period_ms > 0 && reads);
+}
+
+// An encoder shares neither of its pins. All edges of a period may interrupt at once, so the period is short.
+Refusal check_encoder(Walk& walk, const Sensor& sensor, std::size_t index) {
+  walk.reads_pins = true;
+  if (++walk.encoders > kMaxEncoders) return Refusal::too_many;
+  if (is_of_sensor(walk.image, sensor.address, index)) return Refusal::shared_pin;
+  if (has_second_input(sensor) &&
+      (sensor.bus == sensor.address || is_of_sensor(walk.image, sensor.bus, index)))
+    return Refusal::shared_pin;
+  return good_or(Refusal::bad_value,
+                 sensor.period_ms > 0 && sensor.period_ms <= kMostEncoderPeriodMs);
+}
+
+// A part on SPI has its select pin for itself.
+Refusal check_spi(Walk& walk, const Sensor& sensor, std::size_t index) {
+  walk.reads_pins = true;
+  if (is_of_sensor(walk.image, sensor.address, index)) return Refusal::shared_pin;
+  const bool format = sensor.driver == DriverId::spi_register
+                          ? is_enumerator(static_cast<SpiFormat>(sensor.first_input))
+                          : sensor.first_input == 0;
+  return good_or(Refusal::bad_value, sensor.period_ms > 0 && format);
 }
 
 // There is one, which needs no place, and it shares the converter with no analog sensor.
@@ -131,6 +156,11 @@ Refusal check_microphone(Walk& walk, const Sensor& sensor) {
     if (is_analog(other.driver)) return Refusal::bad_value;
   return good_or(Refusal::bad_value,
                  sensor.period_ms == kSoundPeriodMs && sensor.bus == 0 && sensor.address == 0);
+}
+
+Refusal check_board_part(const Sensor& sensor) {
+  return good_or(Refusal::bad_value,
+                 sensor.period_ms > 0 && sensor.bus == 0 && sensor.address == 0);
 }
 
 bool answers_at(const Sensor& sensor, const Sensor& chip) {
@@ -169,21 +199,21 @@ Refusal check_sensor(Walk& walk, const Sensor& sensor, std::size_t index) {
   if (sensor.first_channel != walk.next_channel) return Refusal::bad_index;
   walk.next_channel += sensor.channel_count;
   if (walk.next_channel > walk.image.channels.size()) return Refusal::bad_index;
-  if (sensor.reserved != 0) return Refusal::bad_value;
   const Refusal driver = check_driver(walk, sensor.driver, DriverKind::sensor);
   if (driver != Refusal::none) return driver;
   if (sensor.driver == DriverId::algorithm) return check_algorithm(sensor);
+  if (sensor.room != 0) return Refusal::bad_value;
   if (is_servo_chip(sensor.driver)) return check_servo_chip(walk, sensor, index);
+  if (is_on_spi(sensor.driver)) return check_spi(walk, sensor, index);
   if (sensor.first_input != 0) return Refusal::bad_value;
   if (is_display(sensor.driver)) return check_display(walk, sensor, index);
   if (bus_of(sensor.driver) == Bus::nothing) return Refusal::none;
   if (is_by_echo(sensor.driver)) return check_echo(walk, sensor, index);
-  if (is_analog(sensor.driver)) return check_analog(walk, sensor, index);
+  if (counts_edges(sensor.driver)) return check_encoder(walk, sensor, index);
   if (is_microphone(sensor.driver)) return check_microphone(walk, sensor);
-  walk.reads_pins = walk.reads_pins || is_on_pin(sensor.driver);
-  const bool place = is_on_pin(sensor.driver)
-                         ? is_enumerator(static_cast<ActiveLevel>(sensor.bus))
-                         : sensor.address >= kFirstAddress && sensor.address <= kLastAddress;
+  if (is_board_part(sensor.driver)) return check_board_part(sensor);
+  if (reads_pin(sensor.driver)) return check_pin(walk, sensor, index);
+  const bool place = sensor.address >= kFirstAddress && sensor.address <= kLastAddress;
   const bool alone = !measures_when_told(sensor.driver) || is_alone(walk.image, sensor, index);
   return good_or(Refusal::bad_value, sensor.period_ms > 0 && place && alone &&
                                          sensor.period_ms >= min_period_ms(sensor.driver));
@@ -336,8 +366,9 @@ Refusal check_verb(Walk&, const Verb& verb, std::size_t) {
 }
 
 Refusal check_word(Walk&, const WordEntry& word, std::size_t) {
-  return good_or(Refusal::bad_value,
-                 is_enumerator(word.param) && word.reserved == 0 && word.value != kUnknown);
+  const bool known = word.param == Param::item ? word.value >= item_of_picture(kAllLights)
+                                               : word.value != kUnknown;
+  return good_or(Refusal::bad_value, is_enumerator(word.param) && word.reserved == 0 && known);
 }
 
 Refusal check_variable(Walk& walk, const Variable& variable, std::size_t) {
@@ -521,7 +552,13 @@ Refusal check_adaptation(Walk&, const Adaptation& adaptation, std::size_t) {
                                          (reserved[0] | reserved[1] | reserved[2]) == 0);
 }
 
-// A name comes first, and each actuator has at most one acceleration.
+bool can_have(const Actuator& actuator, const Trait& trait) {
+  if (trait.kind == TraitKind::acceleration) return trait.value > 0 && moves_at_a_speed(actuator);
+  return is_servo(actuator.driver) && trait.value >= kServoPulses.at_min &&
+         trait.value <= kServoPulses.at_max;
+}
+
+// A name comes first. An actuator has at most one trait of each other kind.
 Refusal check_trait(Walk& walk, const Trait& trait, std::size_t index) {
   const Image& image = walk.image;
   if (trait.kind == TraitKind::name) {
@@ -530,12 +567,12 @@ Refusal check_trait(Walk& walk, const Trait& trait, std::size_t index) {
     return good_or(Refusal::bad_value,
                    index == 0 && length <= kMaxRobotName && trait.actuator == 0);
   }
-  if (trait.kind != TraitKind::acceleration) return Refusal::bad_value;
+  if (!is_enumerator(trait.kind)) return Refusal::bad_value;
   if (trait.actuator >= image.actuators.size()) return Refusal::bad_index;
+  const auto rank = [](const Trait& one) { return std::pair(one.kind, one.actuator); };
   const bool in_order = index == 0 || image.traits[index - 1].kind == TraitKind::name ||
-                        image.traits[index - 1].actuator < trait.actuator;
-  return good_or(Refusal::bad_value,
-                 in_order && trait.value > 0 && moves_at_a_speed(image.actuators[trait.actuator]));
+                        rank(image.traits[index - 1]) < rank(trait);
+  return good_or(Refusal::bad_value, in_order && can_have(image.actuators[trait.actuator], trait));
 }
 
 // The tracks of the motions follow each other without gaps, and so do the keys of the tracks. Tracks

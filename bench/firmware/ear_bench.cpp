@@ -1,4 +1,4 @@
-// Runs the ear block by block between markers: tones of all pitches that it knows, with noise. It must find most of them, so that
+// Runs the ear, and its spectrum, block by block between markers: tones of all pitches that it knows, with noise. It must find most of them, so that
 // the count is not that of the early return for silence.
 #include <array>
 #include <cstddef>
@@ -11,6 +11,7 @@ namespace robosync::bench {
 namespace {
 
 drivers::Ear ear;
+drivers::BandValues spectrum;
 std::array<std::int16_t, drivers::kEarBlock> block;
 std::uint32_t random = 1;
 
@@ -32,6 +33,12 @@ drivers::Heard hear() {
   return heard;
 }
 
+void see() {
+  BENCH_MARK(spectrum_begin);
+  spectrum = ear.bands();
+  BENCH_MARK(spectrum_end);
+}
+
 bool measure() {
   int found = 0;
   constexpr std::int32_t kShortest = 4, kLongest = 100, kBlocks = 4;
@@ -40,6 +47,7 @@ bool measure() {
       fill(period);
       const vm::Value hertz = hear().pitch / vm::kScale * period;
       constexpr vm::Value kRate = drivers::kEarRate, kFar = kRate / 20;
+      see();
       if (hertz > kRate - kFar && hertz < kRate + kFar) ++found;
     }
   return found > (kLongest - kShortest) * kBlocks / 2;

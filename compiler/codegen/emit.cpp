@@ -65,7 +65,8 @@ void Emitter::add_algorithms(const Robot& robot, const Tables& tables) {
     if (!algorithm) continue;
     record.bus = algorithm->module;
     record.address = place_row(constants_, algorithm->config);
-    record.first_input = tables.input({algorithm->input, 0});
+    record.room = algorithm->room;
+    record.first_input = tables.input({algorithm->input, algorithm->first});
   }
 }
 

@@ -75,7 +75,7 @@ void RecordMaker::sensors() {
     if (sensor_places_.empty() || sensor_places_.back() != ref.sensor) {
       const SensorConfig& sensor = robot_.sensors[ref.sensor];
       records_.sensors.push_back({strings_.offset(sensor.name.text), sensor.driver, sensor.bus,
-                                  sensor.address, sensor.period_ms, number, 0, 0, 0});
+                                  sensor.address, sensor.period_ms, number, 0, sensor.format, 0});
       sensor_places_.push_back(ref.sensor);
     }
     ++records_.sensors.back().channel_count;
@@ -188,12 +188,24 @@ void RecordMaker::actuator(std::size_t place) {
   records_.actuators.push_back(record);
 }
 
+// 0: the usual one, which the image does not have.
+std::uint16_t trait_of(const ActuatorConfig& config, vm::TraitKind kind) {
+  if (kind == vm::TraitKind::acceleration) return config.acceleration;
+  if (!vm::is_servo(config.driver)) return 0;
+  const auto end =
+      kind == vm::TraitKind::pulse_at_min ? &vm::ServoPulses::at_min : &vm::ServoPulses::at_max;
+  return config.pulses.*end == vm::kServoPulses.*end ? 0 : config.pulses.*end;
+}
+
 void RecordMaker::traits() {
   if (!robot_.name.empty())
     records_.traits.push_back({strings_.offset(robot_.name), 0, vm::TraitKind::name});
-  for (const auto& [place, number] : tables_.actuators())
-    if (const std::uint16_t acceleration = robot_.actuators[place].acceleration; acceleration != 0)
-      records_.traits.push_back({acceleration, number, vm::TraitKind::acceleration});
+  using vm::TraitKind;
+  for (const TraitKind kind :
+       {TraitKind::acceleration, TraitKind::pulse_at_min, TraitKind::pulse_at_max})
+    for (const auto& [place, number] : tables_.actuators())
+      if (const std::uint16_t value = trait_of(robot_.actuators[place], kind); value != 0)
+        records_.traits.push_back({value, number, kind});
 }
 
 void RecordMaker::variable(const ir::Variable& variable) {

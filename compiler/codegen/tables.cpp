@@ -51,7 +51,7 @@ void Tables::use_inputs(const Robot& robot) {
   for (const std::size_t place : used) {
     const AlgorithmConfig& algorithm = *robot.sensors[place].algorithm;
     for (std::size_t i = 0; i < algorithm.inputs; ++i)
-      channels_.emplace(ChannelRef{algorithm.input, i}, 0);
+      channels_.emplace(ChannelRef{algorithm.input, algorithm.first + i}, 0);
   }
 }
 

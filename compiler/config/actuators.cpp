@@ -1,9 +1,13 @@
 // Reads one entry of "actuators".
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "compiler/config/entries.hpp"
 #include "compiler/config/values.hpp"
@@ -17,23 +21,68 @@ constexpr vm::Value kDefaultSoundLength = 1 * vm::kScale;  // the player's own d
 void read_position_range(const json::Value& value, ActuatorConfig& actuator,
                          Diagnostics& diagnostics) {
   actuator.range_span = value.span;
-  if (actuator.to_unit == nullptr) {
+  if (actuator.to_unit == nullptr || actuator.shows_numbers()) {
     diagnostics.report(Code::E0205, "this device has no position, so it cannot have a range")
         .label(value.span);
     return;
   }
   const auto range = read_range(value, *actuator.to_unit, diagnostics);
   if (!range) return;
-  if (range->low < actuator.min || range->high > actuator.max) {
+  if (range->low < actuator.lowest || range->high > actuator.highest) {
     diagnostics
         .report(Code::E0205, "this range is larger than the device's own range, " +
-                                 format_value(actuator.min, *actuator.to_unit) + " to " +
-                                 format_value(actuator.max, *actuator.to_unit))
+                                 format_value(actuator.lowest, *actuator.to_unit) + " to " +
+                                 format_value(actuator.highest, *actuator.to_unit))
         .label(value.span);
     return;
   }
   actuator.min = range->low;
   actuator.max = range->high;
+}
+
+std::string span_text(const vm::ServoPulses& pulses) {
+  return fmt::format("{}ms to {}ms", pulses.at_min / 1000.0, pulses.at_max / 1000.0);
+}
+
+// ["0.6ms", "2.4ms"]: at the lower and at the upper end of the range.
+void read_pulses(const json::Value& value, const Board& board, ActuatorConfig& actuator,
+                 Diagnostics& diagnostics) {
+  const auto read = read_microseconds(value, diagnostics);
+  if (!read) return;
+  const bool on_pin = vm::drives_pin(actuator.driver);
+  const auto [least, most] = on_pin ? board.servo_pulses(actuator.pin) : vm::kServoPulses;
+  actuator.pulses = {(*read)[0], (*read)[1]};
+  for (std::size_t i = 0; i < read->size(); ++i) {
+    const std::uint16_t pulse = (*read)[i];
+    const std::uint16_t nearest = std::clamp(pulse, least, most);
+    if (pulse == nearest) continue;
+    diagnostics
+        .report(Code::E0205,
+                fmt::format("this pulse is {}ms, but a servo {}gets {}", pulse / 1000.0,
+                            on_pin ? "at this pin " : "", span_text({least, most})))
+        .label(value.items[i].span)
+        .fix(value.items[i].span, fmt::format("\"{}us\"", nearest), Applicability::likely);
+  }
+  if (actuator.pulses.at_min == actuator.pulses.at_max)
+    diagnostics.report(Code::E0205, "the two pulses are equal: the servo would not move")
+        .label(value.span);
+}
+
+// The board shortens and lengthens pulses to what the pin may give.
+void check_usual_pulses(const Fields& fields, const Board& board, const ActuatorConfig& actuator,
+                        Diagnostics& diagnostics) {
+  const auto* pin = fields.find("pin");
+  const vm::ServoPulses given = board.servo_pulses(actuator.pin);
+  if (pin == nullptr || !vm::drives_pin(actuator.driver) || given == vm::kServoPulses) return;
+  diagnostics
+      .report(Code::W0223,
+              fmt::format("without `pulse` this servo gets {}, but this pin gives only {}: "
+                          "it does not reach the ends of its range",
+                          span_text(vm::kServoPulses), span_text(given)))
+      .label(pin->span)
+      .helps(fmt::format("write `\"pulse\": [\"{}us\", \"{}us\"]`, and as `range` how far it turns "
+                         "between these",
+                         given.at_min, given.at_max));
 }
 
 // Each word replaces an earlier one of the same name.
@@ -123,11 +172,37 @@ void read_speed_limit(const json::Value& speed, ActuatorConfig& actuator,
   }
 }
 
-void report_keys_of_drives(const Fields& fields, Diagnostics& diagnostics) {
-  for (const std::string_view key : drive_keys())
-    if (const auto* value = fields.find(key))
-      diagnostics.report(Code::E0205, "only a `differential_drive` has `" + std::string(key) + "`")
-          .label(value->span);
+struct OwnedKey {
+  std::string_view key;
+  bool (*has)(vm::DriverId driver);
+  std::string_view owner;
+};
+constexpr std::string_view kPanel = "a panel of lights (`ws2812`)";
+constexpr std::string_view kDrive = "a `differential_drive`";
+constexpr std::array kOwnedKeys = {
+    OwnedKey{"pulse", vm::is_servo, "a servo (`servo`, `pca9685_servo`)"},
+    OwnedKey{"size", vm::shows_pictures_on_a_panel, kPanel},
+    OwnedKey{"zigzag", vm::shows_pictures_on_a_panel, kPanel},
+    OwnedKey{"color", vm::shows_pictures_on_a_panel, kPanel},
+    OwnedKey{"brightness", vm::drives_panel,
+             "a panel or strip of lights (`ws2812`, `ws2812_strip`)"},
+    OwnedKey{"lights", vm::is_strip, "a strip of lights (`ws2812_strip`)"},
+    OwnedKey{"left", vm::drives_wheels, kDrive},
+    OwnedKey{"right", vm::drives_wheels, kDrive},
+    OwnedKey{"speed", vm::drives_wheels, kDrive},
+    OwnedKey{"track", vm::drives_wheels, kDrive},
+    OwnedKey{"trim", vm::drives_wheels, kDrive}};
+
+void report_keys_of_others(const Fields& fields, vm::DriverId driver, Diagnostics& diagnostics) {
+  for (const OwnedKey& owned : kOwnedKeys) {
+    const auto* value = fields.find(owned.key);
+    if (value == nullptr || owned.has(driver)) continue;
+    Diagnostic& error =
+        diagnostics.report(Code::E0205, fmt::format("only {} has `{}`", owned.owner, owned.key))
+            .label(value->span);
+    if (vm::is_strip(driver) && owned.key == "color")
+      error.helps("the program gives a strip its colour: `LIGHT eyes red`");
+  }
 }
 
 void read_acceleration_limit(const json::Value& acceleration, ActuatorConfig& actuator,
@@ -136,9 +211,11 @@ void read_acceleration_limit(const json::Value& acceleration, ActuatorConfig& ac
   if (!actuator.moves_at_a_speed()) {
     diagnostics
         .report(Code::E0205,
-                "this device does not move at a speed, so it has no ACCELERATION to limit")
+                "this device starts and stops without a ramp, so it has no ACCELERATION to limit")
         .label(acceleration.span)
-        .helps("servos, a `joint` and a `drive` have one");
+        .helps(
+            "servos, a `joint` and a `drive` have ramps; a `differential_drive` and a motor do "
+            "not");
     return;
   }
   actuator.acceleration =
@@ -184,7 +261,9 @@ void read_safe(const json::Value& value, ActuatorConfig& actuator, Diagnostics& 
                                               : "a motor with `hold` keeps running") +
                                " when the robot is halted")
       .label(value.span)
-      .helps("`safe` can be `coast` (off) here; only a servo may `hold`");
+      .helps(
+          "`safe` can be `coast` (off) here; what stands still on its own may `hold`: a servo, a "
+          "`joint`, a picture");
 }
 
 // Only a bus brings a voltage of the part to the board: its pull-ups may have another supply.
@@ -226,17 +305,33 @@ void read_place(Fields& fields, const WiringType& type, const Board::Part* part,
   }
 }
 
+// `"device": "drive"` with the keys of the drive that has pins: one mistake, however many keys there are.
+const Device* meant_drive(const Fields& fields, Diagnostics& diagnostics) {
+  const auto* const device = fields.find("device");
+  const auto* const left = fields.find("left");
+  if (device == nullptr || left == nullptr || !same_name(device->text, "drive")) return nullptr;
+  diagnostics.report(Code::E0205, "a `drive` has no pins: its commands go over the link")
+      .label(device->span)
+      .label(left->span, "pins", false)
+      .helps("did you mean `differential_drive`?")
+      .fix(device->span, "\"differential_drive\"", Applicability::likely);
+  return find_device("differential_drive", false);
+}
+
 }  // namespace
 
 std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringReader& wiring,
                                             Diagnostics& diagnostics) {
   Fields fields(value, Object::actuator, diagnostics);
   const auto name = read_name(fields, "an actuator", diagnostics);
+  const Device* const meant = meant_drive(fields, diagnostics);
   const Board::Part* part = find_part(fields, wiring.board(), false);
-  const WiringType* type = choose_type(fields, part, false, diagnostics);
+  const WiringType* type =
+      meant != nullptr ? nullptr : choose_type(fields, part, false, diagnostics);
   if (!name) return std::nullopt;
   const Device* const known =
-      choose_device(fields, type, *name, wiring.board(), false, diagnostics);
+      meant != nullptr ? meant
+                       : choose_device(fields, type, *name, wiring.board(), false, diagnostics);
   const Device& device = known != nullptr ? *known : virtual_device(false);
   ActuatorConfig actuator = device.actuator;
   actuator.name = *name;
@@ -246,8 +341,14 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   if (type != nullptr) read_place(fields, *type, part, wiring, actuator, diagnostics);
   if (type != nullptr) check_voltage(fields, *type, device, wiring, diagnostics);
   actuator.panel = read_lights(fields, device.actuator.driver, diagnostics);
-  if (!vm::drives_wheels(device.actuator.driver)) report_keys_of_drives(fields, diagnostics);
+  report_keys_of_others(fields, device.actuator.driver, diagnostics);
   if (const auto* range = fields.find("range")) read_position_range(*range, actuator, diagnostics);
+  if (vm::is_servo(device.actuator.driver)) {
+    if (const auto* pulse = fields.find("pulse"))
+      read_pulses(*pulse, wiring.board(), actuator, diagnostics);
+    else
+      check_usual_pulses(fields, wiring.board(), actuator, diagnostics);
+  }
   if (const auto* speeds = fields.find("speeds")) read_speeds(*speeds, actuator, diagnostics);
   if (const auto* sounds = fields.find("sounds"))
     read_sounds(*sounds, device, actuator, diagnostics);

@@ -41,6 +41,8 @@ struct AlgorithmModule {
   std::vector<ModuleParameter> parameters;
   std::uint16_t shortest_period_ms = 0, longest_period_ms = 0;
   std::uint16_t usual_period_ms = 0;  // without a rate: on a companion, or for a fed input
+  std::uint8_t room = 0;              // on the board: vm::Sensor::room
+  std::size_t most_constants = 0;     // on the board: what it may be taught; 0: nothing
   // The device of the companion computer that the module reads: "camera". Empty: the module runs on the board.
   std::string device{};
 };
@@ -53,7 +55,8 @@ struct ModuleInFile {
 
 struct WordsInFile {
   std::vector<std::string> words;
-  std::string why_not;  // if there are no words: what is wrong with the file
+  std::string why_not;                 // if there are no words: what is wrong with the file
+  std::vector<vm::Value> constants{};  // of the words, for a module on the board
 };
 
 struct AlgorithmModules {

@@ -16,6 +16,8 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::string_view kWordsKey = "words";
+constexpr const char* kElsewhere =
+    "`\"on\": \"companion\"` lets a computer beside the robot listen, with its own microphone";
 constexpr int kStalePeriods = 5;  // of a companion's channels; the same as for sampled channels
 
 class AlgorithmReader {
@@ -45,12 +47,17 @@ private:
     sensor.name = name;
     sensor.driver = vm::DriverId::algorithm;
     sensor.period_ms = period(*input);
-    sensor.algorithm = {number_, static_cast<std::size_t>(input - robot_.sensors.data()),
-                        module_->inputs.size(), config(*input->channels.front().unit)};
+    sensor.algorithm = {number_,
+                        static_cast<std::size_t>(input - robot_.sensors.data()),
+                        first_of(*input),
+                        module_->inputs.size(),
+                        config(*input->channels.front().unit),
+                        module_->room};
     for (const ModuleOutput& output : module_->outputs) {
       sensor.channels.push_back(channel(name, output));
       sensor.channels.back().stale_ms = stale_as(*input);
     }
+    if (is_taught() && !add_taught_words(name, sensor)) return false;
     robot_.sensors.push_back(std::move(sensor));
     return true;
   }
@@ -62,7 +69,7 @@ private:
     sensor.name = name;
     sensor.driver = vm::DriverId::virtual_sensor;
     const std::uint16_t period = period_in_range(module_->usual_period_ms, name.span);
-    sensor.companion = {module_->name, period, config(canonical_unit(vm::Dimension::number)), {}};
+    sensor.companion = {module_->name, period, config(canonical_unit(vm::Dimension::number))};
     for (const ModuleOutput& output : module_->outputs) {
       sensor.channels.push_back(channel(name, output));
       sensor.channels.back().stale_ms =
@@ -172,7 +179,8 @@ private:
     const auto& firmware = modules_.firmware;
     const auto found = std::ranges::find(firmware, value->text, &AlgorithmModule::name);
     const auto beside = std::ranges::find(modules_.companion, value->text, &AlgorithmModule::name);
-    if (found != firmware.end()) {
+    const bool in_both = found != firmware.end() && beside != modules_.companion.end();
+    if (found != firmware.end() && !(in_both && runs_on_companion(*found))) {
       module_ = &*found;
       number_ = static_cast<std::uint8_t>(found - firmware.begin());
     } else if (beside != modules_.companion.end()) {
@@ -183,12 +191,30 @@ private:
     return module_ != nullptr && runs_where_it_should();
   }
 
+  // A module that both have runs on the board if that has what it reads, unless `on` says where.
+  bool runs_on_companion(const AlgorithmModule& on_board) {
+    if (wants_companion_) return *wants_companion_;
+    const auto* value = fields_.find("input");
+    if (value == nullptr || value->kind != json::Kind::string) return true;
+    return std::ranges::none_of(robot_.sensors, [&](const SensorConfig& sensor) {
+      return same_name(sensor.name.text, value->text) && has_channel(sensor, on_board);
+    });
+  }
+
+  static bool has_channel(const SensorConfig& sensor, const AlgorithmModule& module) {
+    return std::ranges::any_of(sensor.channels, [&](const ChannelConfig& channel) {
+      return same_name(channel.name.text, module.inputs.front().name);
+    });
+  }
+
   // Suggests the modules of the place that `on` names, or of both places.
   void report_unknown_module(const json::Value& value) {
     std::vector<std::string> known;
     if (!wants_companion_.value_or(false)) known = names_of(modules_.firmware);
     if (wants_companion_.value_or(true))
-      std::ranges::copy(names_of(modules_.companion), std::back_inserter(known));
+      std::ranges::copy_if(
+          names_of(modules_.companion), std::back_inserter(known),
+          [&](const std::string& name) { return std::ranges::find(known, name) == known.end(); });
     const std::string who = !wants_companion_   ? "there is"
                             : *wants_companion_ ? "a companion computer has"
                                                 : "the firmware has";
@@ -215,6 +241,7 @@ private:
                         .label(value->span);
     if (!did_you_mean(d, value->span, value->text, known, "\"") && !known.empty())
       d.helps("sensors: " + list_names(known));
+    if (is_taught()) d.helps(kElsewhere);
     return nullptr;
   }
 
@@ -230,10 +257,27 @@ private:
     return nullptr;
   }
 
-  // The module reads the sensor's first channels, in their order.
+  // The module reads channels that follow each other, from the one with the name of its first input on, or else from the first.
+  std::size_t first_of(const SensorConfig& sensor) const {
+    const auto named = std::ranges::find_if(sensor.channels, [&](const ChannelConfig& channel) {
+      return same_name(channel.name.text, module_->inputs.front().name);
+    });
+    return named == sensor.channels.end()
+               ? 0
+               : static_cast<std::size_t>(named - sensor.channels.begin());
+  }
+
   bool can_read(const SensorConfig& sensor) {
-    const std::size_t needed = module_->inputs.size();
-    if (sensor.channels.size() < needed) {
+    const std::size_t needed = module_->inputs.size(), first = first_of(sensor);
+    if (is_taught() && !has_channel(sensor, *module_)) {
+      diagnostics_
+          .report(Code::E0205, shown() + " reads the spectrum of a microphone, but " +
+                                   sensor.name.shown() + " has none")
+          .label(input_span_)
+          .helps(kElsewhere);
+      return false;
+    }
+    if (sensor.channels.size() - first < needed) {
       diagnostics_
           .report(Code::E0205, shown() + " reads " + std::to_string(needed) + " channels, but " +
                                    sensor.name.shown() + " has " +
@@ -243,7 +287,7 @@ private:
       return false;
     }
     for (std::size_t i = 0; i < needed; ++i)
-      if (!can_read(sensor.channels[i], module_->inputs[i])) return false;
+      if (!can_read(sensor.channels[first + i], module_->inputs[i])) return false;
     return true;
   }
 
@@ -375,7 +419,8 @@ private:
     if (words_ == nullptr && has_unknown_key_) return false;  // which may be a misspelt `words`
     if (words_ != nullptr && !read_text(*words_, diagnostics_)) return false;
     const std::string file = in_folder(words_ != nullptr ? words_->text : name.text + ".words");
-    sensor.companion->words_file = file;
+    sensor.words_file = file;
+    sensor.taught_by = module_->name;
     const WordsInFile found =
         modules_.words_in_file != nullptr ? modules_.words_in_file(file) : WordsInFile{};
     if (!found.why_not.empty()) {
@@ -385,12 +430,32 @@ private:
           .helps("`rsc teach " + name.text + " WORD one.wav two.wav three.wav` teaches it a word");
       return false;
     }
+    if (sensor.algorithm && !take_constants(name, found, sensor.algorithm->config)) return false;
     for (ChannelConfig& channel : sensor.channels)
       if (module_->outputs[channel.input].is_taught) {
         channel.learns_words = modules_.words_in_file == nullptr;
         for (const std::string& word : found.words)
           channel.add_label(word);
       }
+    return true;
+  }
+
+  // They go to the board with the program.
+  bool take_constants(const Spelled& name, const WordsInFile& found,
+                      std::vector<vm::Value>& config) {
+    if (found.constants.size() > module_->most_constants) {
+      diagnostics_
+          .report(Code::E0205, name.shown() + " was taught " + std::to_string(found.words.size()) +
+                                   " words, which take " + std::to_string(found.constants.size()) +
+                                   " numbers; the board holds " +
+                                   std::to_string(module_->most_constants))
+          .label(words_ != nullptr ? words_->span : name.span)
+          .helps("`rsc teach " + name.text + " --forget WORD` takes one away")
+          .helps(kElsewhere);
+      return false;
+    }
+    config.push_back(static_cast<vm::Value>(found.constants.size()));
+    config.insert(config.end(), found.constants.begin(), found.constants.end());
     return true;
   }
 
@@ -413,7 +478,7 @@ private:
   std::uint16_t stale_as(const SensorConfig& input) const {
     std::uint16_t soonest = 0;
     for (std::size_t i = 0; i < module_->inputs.size(); ++i) {
-      const std::uint16_t stale = input.channels[i].stale_ms;
+      const std::uint16_t stale = input.channels[first_of(input) + i].stale_ms;
       if (stale != 0 && (soonest == 0 || stale < soonest)) soonest = stale;
     }
     return soonest;

@@ -23,8 +23,8 @@ std::uint16_t read_pin(const json::Value& value, Diagnostics& diagnostics) {
   return static_cast<std::uint16_t>(read_whole(value, 0, UINT16_MAX - 1, diagnostics).value_or(0));
 }
 
-// [{"pins": [first, last], …}]. The board enforces its own limits on an output. The compiler only needs to know whether its
-// pulses may start at 0, as the power of a motor does.
+// [{"pins": [first, last], …}]. The board enforces its own limits on an output. The compiler needs to know whether its pulses may
+// start at 0, as the power of a motor does, and which of them are for servos.
 std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
                                    Diagnostics& diagnostics) {
   std::vector<Board::Pins> ranges;
@@ -36,8 +36,12 @@ std::vector<Board::Pins> read_pins(const json::Value& list, Object object,
     if (pins == nullptr || pins->items.size() != 2) continue;
     Board::Pins range{read_pin(pins->items[0], diagnostics), read_pin(pins->items[1], diagnostics)};
     const auto* pulses = fields.find("pulse_us");
-    if (pulses != nullptr && !pulses->items.empty())
-      range.power = read_whole(pulses->items[0], 0, UINT16_MAX, diagnostics) == 0;
+    if (pulses != nullptr && pulses->items.size() == 2) {
+      const std::uint16_t shortest = read_pin(pulses->items[0], diagnostics);
+      range.power = shortest == 0;
+      range.pulses = {std::max(shortest, vm::kServoPulses.at_min),
+                      std::min(read_pin(pulses->items[1], diagnostics), vm::kServoPulses.at_max)};
+    }
     ranges.push_back(range);
   }
   return ranges;
@@ -89,6 +93,15 @@ std::vector<Board::Reserved> read_reserved(const json::Value& list, Diagnostics&
   return reserved;
 }
 
+struct OptionalPins {
+  std::string_view key;
+  std::vector<Board::Pins> Board::*pins;
+};
+constexpr OptionalPins kOptionalPins[] = {{"analog", &Board::analog},
+                                          {"enables", &Board::enables},
+                                          {"panels", &Board::panels},
+                                          {"selects", &Board::selects}};
+
 Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
   constexpr std::string_view kWhat = "flash";
   Fields fields(value, Object::flash, diagnostics);
@@ -112,6 +125,12 @@ bool Board::has_output(std::uint16_t pin) const {
   return is_in(outputs, pin);
 }
 
+vm::ServoPulses Board::servo_pulses(std::uint16_t pin) const {
+  for (const Pins& pins : outputs)
+    if (pin >= pins.first && pin <= pins.last) return pins.pulses;
+  return vm::kServoPulses;
+}
+
 bool Board::gives_power(std::uint16_t pin) const {
   return std::ranges::any_of(outputs, [&](const Pins& pins) {
     return pin >= pins.first && pin <= pins.last && pins.power;
@@ -122,16 +141,16 @@ bool Board::has_input(std::uint16_t pin) const {
   return is_in(inputs, pin);
 }
 
+bool Board::has_echo(std::uint16_t pin) const {
+  return is_in(echoes, pin);
+}
+
 bool Board::has_analog(std::uint16_t pin) const {
   return is_in(analog, pin);
 }
 
 bool Board::has_enable(std::uint16_t pin) const {
   return is_in(enables, pin);
-}
-
-bool Board::has_panel(std::uint16_t pin) const {
-  return is_in(panels, pin);
 }
 
 std::vector<Board::Pins> Board::all_pins() const {
@@ -164,6 +183,7 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
   Fields fields(*tree, Object::board, diagnostics);
   board.step_budget = read_number(fields, "step_budget", "a board", diagnostics);
   board.i2c_buses = read_number(fields, "i2c_buses", "a board", diagnostics);
+  board.spi_buses = read_number(fields, "spi_buses", "a board", diagnostics);
   board.serial_lines = read_number(fields, "serial_lines", "a board", diagnostics);
   if (const auto* volts = fields.find("volts"))
     board.volts =
@@ -172,12 +192,15 @@ Board read_board(const BoardText& text, Diagnostics& diagnostics) {
     board.outputs = read_pins(*outputs, Object::outputs, diagnostics);
   if (const auto* inputs = fields.require("inputs", "a board"))
     board.inputs = read_pins(*inputs, Object::inputs, diagnostics);
-  if (const auto* analog = fields.find("analog"))
-    board.analog = read_pins(*analog, Object::inputs, diagnostics);
-  if (const auto* enables = fields.find("enables"))
-    board.enables = read_pins(*enables, Object::inputs, diagnostics);
-  if (const auto* panels = fields.find("panels"))
-    board.panels = read_pins(*panels, Object::inputs, diagnostics);
+  const auto* echoes = fields.find("echoes");
+  board.echoes = echoes != nullptr ? read_pins(*echoes, Object::inputs, diagnostics) : board.inputs;
+  for (const auto& [key, pins] : kOptionalPins)
+    if (const auto* rows = fields.find(key))
+      board.*pins = read_pins(*rows, Object::inputs, diagnostics);
+  if (const auto* rows = fields.find("spi_pins"))
+    for (const Board::Pins& row : read_pins(*rows, Object::inputs, diagnostics))
+      board.spi_pins = row;
+  if (const auto* pin = fields.find("player_pin")) board.player_pin = read_pin(*pin, diagnostics);
   if (const auto* reserved = fields.find("reserved"))
     board.reserved = read_reserved(*reserved, diagnostics);
   if (const auto* parts = fields.find("on_board")) board.parts = read_parts(*parts, diagnostics);

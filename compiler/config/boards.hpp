@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "compiler/diagnostics/diagnostic.hpp"
-#include "vm/value.hpp"
+#include "vm/image.hpp"
 
 namespace robosync::compiler {
 
@@ -29,15 +29,22 @@ struct Board {
   std::uint32_t step_budget = 0;  // M4 instructions of VM code in one step
   struct Pins {
     std::uint16_t first, last;
-    bool power = true;  // of outputs: false if they give pulses for servos only
+    bool power = true;         // of outputs: false if they give pulses for servos only
+    vm::ServoPulses pulses{};  // of outputs: the limits for a servo
   };
-  std::vector<Pins> outputs;    // pins that a program may drive
-  std::vector<Pins> inputs;     // … and read; no pin is both
-  std::vector<Pins> analog;     // pins whose voltage it may read; one may also be an output
-  std::vector<Pins> enables;    // for the enable inputs of chips
-  std::vector<Pins> panels;     // outputs that can drive a panel of lights
-  std::uint32_t i2c_buses = 0;  // numbered from 0
-  struct Reserved {             // an address on one of them that no program may use
+  std::vector<Pins> outputs;  // pins that a program may drive
+  std::vector<Pins> inputs;   // … and read; one may be both, but not in one program
+  std::vector<Pins> echoes;   // the inputs that can be that of an echo
+  std::vector<Pins> analog;   // pins whose voltage it may read; one may also be an output
+  std::vector<Pins> enables;  // for enable inputs of chips, and select inputs on SPI
+  std::vector<Pins> panels;   // outputs that can drive a panel of lights
+  std::vector<Pins> selects;  // for select inputs on SPI: some of enables and outputs
+  Pins spi_pins{1,
+                0};  // that the SPI bus has if a robot has a part there; without them, first > last
+  std::optional<std::uint16_t> player_pin;  // of the first serial line, if the SPI bus has it, too
+  std::uint32_t i2c_buses = 0;              // numbered from 0
+  std::uint32_t spi_buses = 0;              // likewise
+  struct Reserved {                         // an address on one of them that no program may use
     std::uint8_t bus;
     std::uint16_t address;
     std::string used_for;
@@ -69,10 +76,12 @@ struct Board {
 
   [[nodiscard]] bool has_output(std::uint16_t pin) const;
   [[nodiscard]] bool gives_power(std::uint16_t pin) const;
+  // The shortest and the longest pulse that a servo at the pin gets.
+  [[nodiscard]] vm::ServoPulses servo_pulses(std::uint16_t pin) const;
   [[nodiscard]] bool has_input(std::uint16_t pin) const;
+  [[nodiscard]] bool has_echo(std::uint16_t pin) const;
   [[nodiscard]] bool has_analog(std::uint16_t pin) const;
   [[nodiscard]] bool has_enable(std::uint16_t pin) const;
-  [[nodiscard]] bool has_panel(std::uint16_t pin) const;
   [[nodiscard]] std::vector<Pins> all_pins() const;
   // Null if programs may use it.
   [[nodiscard]] const Reserved* find_reserved(std::uint8_t bus, std::uint16_t address) const;

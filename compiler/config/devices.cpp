@@ -118,6 +118,12 @@ void read_actuator_device(const Fields& fields, Device& device, Diagnostics& dia
       const auto read = read_range(*range, *actuator.to_unit, diagnostics).value_or(Range{});
       actuator.min = read.low;
       actuator.max = read.high;
+      const auto* widest = to_fields.find("widest");
+      const auto limits = widest == nullptr
+                              ? read
+                              : read_range(*widest, *actuator.to_unit, diagnostics).value_or(read);
+      actuator.lowest = limits.low;
+      actuator.highest = limits.high;
     }
   }
   if (const auto* at = fields.find("at")) {

@@ -14,13 +14,19 @@ namespace {
 constexpr std::string_view kWhat = "a differential drive";
 constexpr std::array<std::string_view, 2> kSideKeys = {"left", "right"};
 
-void report_pins(const Fields& fields, Diagnostics& diagnostics) {
-  for (const char* key : {"pin", "pins"})
-    if (const auto* wrong = fields.find(key))
-      diagnostics
-          .report(Code::E0205, std::string(kWhat) + " has no `" + key + "`: it has two motors")
-          .label(wrong->span)
-          .helps("write the pins of each: `\"left\": [4, 5], \"right\": [6, 7]`");
+// Then `left` and `right` are not also missed.
+bool has_pins(const Fields& fields, Diagnostics& diagnostics) {
+  for (const char* key : {"pins", "pin"}) {
+    const auto* const wrong = fields.find(key);
+    if (wrong == nullptr) continue;
+    diagnostics
+        .report(Code::E0206,
+                std::string(kWhat) + " needs the keys `left` and `right`, not `" + key + "`")
+        .label(wrong->span)
+        .helps("write the pins of each: `\"left\": [4, 5], \"right\": [6, 7]`");
+    return true;
+  }
+  return false;
 }
 
 // Above 0 and at most `most`.
@@ -60,16 +66,10 @@ void read_trim(const json::Value& value, vm::DriveParameters& drive, Diagnostics
 
 }  // namespace
 
-std::span<const std::string_view> drive_keys() {
-  static constexpr std::array<std::string_view, 5> kKeys = {"left", "right", "speed", "track",
-                                                            "trim"};
-  return kKeys;
-}
-
 std::optional<vm::DriveParameters> read_drive(Fields& fields, WiringReader& wiring,
                                               const ActuatorConfig& actuator,
                                               Diagnostics& diagnostics) {
-  report_pins(fields, diagnostics);
+  if (has_pins(fields, diagnostics)) return std::nullopt;
   vm::DriveParameters drive{};
   drive.trim = {vm::kFullTrim, vm::kFullTrim};
   drive.usual = actuator.usual_speed * vm::kScale;

@@ -118,8 +118,6 @@ void say_assumed(const Device& device, const Spelled& name, Diagnostics& diagnos
 std::string other_than(std::string_view type, bool is_sensor) {
   std::string feeds = is_sensor ? "`\"type\": \"VIRTUAL\"` says that it is fed"
                                 : "`\"type\": \"VIRTUAL\"` says that it has no hardware";
-  if (type == "SPI")
-    return "no board has an SPI bus for programs; many parts can be wired by I2C, too; " + feeds;
   if (type == "UART")
     return "the serial line of a board is for a sound player, `\"device\": \"dfplayer\"`; " + feeds;
   if (type == "GPIO")
@@ -129,9 +127,9 @@ std::string other_than(std::string_view type, bool is_sensor) {
   return feeds;
 }
 
-// A microphone cannot be wired. On a board that has none, it is fed.
+// A microphone, a logo and a thermometer cannot be wired. On a board that has none, it is fed.
 bool is_fed_here(const Device* device, const Board::Part* part) {
-  return device != nullptr && part == nullptr && vm::is_microphone(device->sensor.driver);
+  return device != nullptr && part == nullptr && vm::is_of_board(device->sensor.driver);
 }
 
 }  // namespace
@@ -192,13 +190,14 @@ const Device* choose_device(const Fields& fields, const WiringType* type, const 
     return fallback;
   } else {
     device = default_device(type->name, is_sensor);
-    if (device != nullptr && type->name != kVirtual) say_assumed(*device, name, diagnostics);
+    if (device != nullptr && device->has_driver && type->name != kVirtual)
+      say_assumed(*device, name, diagnostics);
   }
   const bool is_virtual = type != nullptr && type->name == kVirtual;
   if (!is_virtual && (device == nullptr || !device->has_driver)) {
-    const std::string thing =
-        device != nullptr ? "a `" + device->name + "`"
-                          : std::string(type->name) + " " + (is_sensor ? "sensors" : "actuators");
+    std::string thing = device != nullptr && fields.find("device") != nullptr
+                            ? "a `" + device->name + "`"
+                            : std::string(type->name) + " " + (is_sensor ? "sensors" : "actuators");
     diagnostics
         .report(Code::W0212, "this version has no driver for " + thing + ": `" + name.text +
                                  "` is virtual, " + what_it_does(is_sensor))

@@ -27,20 +27,26 @@ namespace robosync::compiler {
 void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& channel,
                   Diagnostics& diagnostics);
 
-// Reads what robot.json says of the lights of a panel or strip, and reports keys that another device has.
+// Reads what robot.json says of the lights of a panel or strip; nothing for another driver.
 [[nodiscard]] std::optional<PanelConfig> read_lights(Fields& fields, vm::DriverId driver,
                                                      Diagnostics& diagnostics);
 inline constexpr std::int64_t kUsualPanelPercent = 10;
 inline constexpr std::int64_t kMostPanelPercent = 20;
 [[nodiscard]] std::vector<std::string_view> panel_colors();
 
+// Reads "pictures": the words of the actuators that show pictures. A word of the device with the same name is replaced.
+void read_pictures(const json::Value& value, Robot& robot, Diagnostics& diagnostics);
+
 // Reads the wiring of a differential drive and its measures. nullopt: some are wrong or missing, which is reported.
 [[nodiscard]] std::optional<vm::DriveParameters> read_drive(Fields& fields, WiringReader& wiring,
                                                             const ActuatorConfig& actuator,
                                                             Diagnostics& diagnostics);
 inline constexpr vm::Value kLeastTrim = 50;  // percent; a larger difference is a fault of the robot
-// The keys that only a differential drive has.
-[[nodiscard]] std::span<const std::string_view> drive_keys();
+
+// Reads what an edge of an encoder is worth, and checks that a board can count its edges at the greatest speed. `channels`: those of
+// robot.json, or null.
+void scale_encoder(Fields& fields, SensorConfig& sensor, const json::Value* channels,
+                   Diagnostics& diagnostics);
 
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,

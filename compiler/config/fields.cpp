@@ -61,7 +61,8 @@ void Fields::check_key(const json::Member& member, Object object) {
 const json::Value* Fields::find(std::string_view key) const {
   const auto found = std::find_if(value_.members.begin(), value_.members.end(),
                                   [&](const json::Member& member) { return member.key == key; });
-  return found == value_.members.end() ? nullptr : &found->value;
+  if (found != value_.members.end()) return &found->value;
+  return assumed_ && assumed_->key == key ? &assumed_->value : nullptr;
 }
 
 const json::Value* Fields::require(std::string_view key, std::string_view what) {
@@ -72,6 +73,12 @@ const json::Value* Fields::require(std::string_view key, std::string_view what) 
         .label({value_.span.file, value_.span.begin, value_.span.begin + 1});
   }
   return found;
+}
+
+const json::Value& Fields::assume(std::string_view key, std::string text, Span span) {
+  if (const json::Value* const said = find(key)) return *said;
+  assumed_ = {std::string(key), span, {json::Kind::string, span, std::move(text), false, {}, {}}};
+  return assumed_->value;
 }
 
 void report_repeated_keys(const json::Value& object, Diagnostics& diagnostics) {

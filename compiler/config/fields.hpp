@@ -2,6 +2,8 @@
 // use yet get a warning.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -57,6 +59,8 @@ public:
   // As find(), but reports E0206 if the key is missing. If some key is unknown, it may be this one misspelt: then nothing is
   // reported. `what` names the object: "a sensor".
   [[nodiscard]] const json::Value* require(std::string_view key, std::string_view what);
+  // If the key is missing, it has this text from now on, at `span`. One key at most.
+  const json::Value& assume(std::string_view key, std::string text, Span span);
 
 private:
   void check_key(const json::Member& member, Object object);
@@ -64,6 +68,7 @@ private:
   const json::Value& value_;
   Diagnostics& diagnostics_;
   bool has_unknown_key_ = false;
+  std::optional<json::Member> assumed_;
 };
 
 // Reports keys that appear twice in `object`, whose keys can be any names (channels, groups, speeds).

@@ -5,21 +5,18 @@
 
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/keywords.hpp"
+#include "compiler/syntax/lexer_state.hpp"
 
 namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kListed = 12;
 
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
+// As the lexer takes it, with the letters of all languages.
 bool can_be_written(std::string_view name) {
-  return !name.empty() && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(),
-                     [](char c) { return is_letter(c) || (c >= '0' && c <= '9'); }) &&
-         name.find_first_not_of('_') != std::string_view::npos;
+  return word_length(name) == name.size() &&
+         name.find_first_not_of('_') != std::string_view::npos &&
+         !(name.front() >= '0' && name.front() <= '9');
 }
 
 }  // namespace
@@ -66,12 +63,16 @@ void check_name(const Spelled& name, Diagnostics& diagnostics) {
 
 std::string list_names(const std::vector<std::string>& names, std::string_view last) {
   std::string list;
-  const std::size_t count = std::min(names.size(), kListed);
-  for (std::size_t i = 0; i < count; ++i) {
+  const bool whole = names.size() <= kListed;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!whole && i == kListed / 2) {  // what a robot adds of its own stands last
+      list += ", …";
+      i = names.size() - kListed / 2;
+    }
     if (i > 0) list += i + 1 == names.size() ? " " + std::string(last) + " " : ", ";
     list += "`" + names[i] + "`";
   }
-  return names.size() > count ? list + ", …" : list;
+  return list;
 }
 
 }  // namespace robosync::compiler

@@ -57,7 +57,7 @@ struct Spelled {
 // Reports a name that RSL cannot write (E0103) or that is one of its words (E0102).
 void check_name(const Spelled& name, Diagnostics& diagnostics);
 
-// "`a`, `b` and `c`", for messages; at most the first twelve.
+// "`a`, `b` and `c`", for messages; of more than twelve, the first six and the last six.
 [[nodiscard]] std::string list_names(const std::vector<std::string>& names,
                                      std::string_view last = "and");
 

@@ -25,14 +25,6 @@ constexpr std::array kColors = {
 #undef COLOR
 };
 
-struct LightKey {
-  std::string_view name;
-  bool of_panel, of_strip;
-};
-constexpr std::array kLightKeys = {
-    LightKey{"size", true, false}, LightKey{"zigzag", true, false}, LightKey{"color", true, false},
-    LightKey{"brightness", true, true}, LightKey{"lights", false, true}};
-
 static_assert(255 * kMostPanelPercent / 100 <= vm::kMostLight);
 
 Color read_color(const json::Value& value, Diagnostics& diagnostics) {
@@ -84,21 +76,6 @@ PanelConfig read_strip(Fields& fields, Diagnostics& diagnostics) {
   return strip;
 }
 
-void report_keys_of_others(const Fields& fields, bool panel, bool strip, Diagnostics& diagnostics) {
-  for (const LightKey& key : kLightKeys) {
-    const auto* value = fields.find(key.name);
-    if (value == nullptr || (panel && key.of_panel) || (strip && key.of_strip)) continue;
-    const std::string_view which = !key.of_strip   ? "a panel of lights (`ws2812`)"
-                                   : !key.of_panel ? "a strip of lights (`ws2812_strip`)"
-                                                   : "a panel or strip of lights (`ws2812`, "
-                                                     "`ws2812_strip`)";
-    auto& error = diagnostics.report(Code::E0205, fmt::format("only {} has `{}`", which, key.name))
-                      .label(value->span);
-    if (strip && key.name == "color")
-      error.helps("the program gives a strip its colour: `LIGHT eyes red`");
-  }
-}
-
 }  // namespace
 
 std::vector<std::string_view> panel_colors() {
@@ -109,11 +86,8 @@ std::vector<std::string_view> panel_colors() {
 
 std::optional<PanelConfig> read_lights(Fields& fields, vm::DriverId driver,
                                        Diagnostics& diagnostics) {
-  const bool strip = vm::is_strip(driver), panel = vm::drives_panel(driver) && !strip;
-  report_keys_of_others(fields, panel, strip, diagnostics);
-  if (strip) return read_strip(fields, diagnostics);
-  if (panel) return read_panel(fields, diagnostics);
-  return std::nullopt;
+  if (!vm::drives_panel(driver)) return std::nullopt;
+  return vm::is_strip(driver) ? read_strip(fields, diagnostics) : read_panel(fields, diagnostics);
 }
 
 }  // namespace robosync::compiler

@@ -21,6 +21,16 @@ void ChannelConfig::add_label(std::string label) {
   max = static_cast<vm::Value>(labels.size() - 1) * vm::kScale;
 }
 
+bool ActuatorConfig::shows_numbers() const {
+  return to_unit != nullptr && to_unit->dimension == vm::Dimension::number;
+}
+
+bool ActuatorConfig::moves() const {
+  return find_in(verbs, [](const VerbConfig& verb) {
+           return verb.action == vm::Action::move || verb.has(vm::Param::direction);
+         }) != nullptr;
+}
+
 bool ActuatorConfig::moves_at_a_speed() const {
   return to_unit != nullptr && at_unit != nullptr && usual_speed != 0 && !vm::drives_wheels(driver);
 }

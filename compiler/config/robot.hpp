@@ -42,10 +42,13 @@ struct ChannelConfig {
 
 // Makes a sensor an algorithm: its channels are the outputs of a module.
 struct AlgorithmConfig {
-  std::uint8_t module = 0;        // its number (algorithm_modules.hpp)
-  std::size_t input = 0;          // the sensor that it reads: an index in Robot::sensors
-  std::size_t inputs = 0;         // how many channels of it, from the first
-  std::vector<vm::Value> config;  // its parameters, all of them
+  std::uint8_t module = 0;  // its number (algorithm_modules.hpp)
+  std::size_t input = 0;    // the sensor that it reads: an index in Robot::sensors
+  std::size_t first = 0;    // the first channel of it that it reads …
+  std::size_t inputs = 0;   // … and how many
+  std::vector<vm::Value>
+      config;  // its parameters, all of them, and what it was taught: how many constants, and these
+  std::uint8_t room = 0;  // vm::Sensor::room
 };
 
 // Makes a fed sensor the outputs of a module that runs on a companion computer.
@@ -53,7 +56,6 @@ struct CompanionConfig {
   std::string module;
   std::uint16_t period_ms = 0;    // how often it sends its results
   std::vector<vm::Value> config;  // its parameters, all of them
-  std::string words_file;         // the file with the words it was taught; empty: it is not taught
 };
 
 struct SensorConfig {
@@ -63,9 +65,13 @@ struct SensorConfig {
   std::uint8_t bus = 0;
   std::uint16_t address = 0;    // or pin
   std::uint16_t period_ms = 0;  // of its fastest channel
+  std::uint8_t format = 0;      // vm::SpiFormat of a spi_register; else 0
   std::vector<ChannelConfig> channels;
   std::optional<AlgorithmConfig> algorithm;
   std::optional<CompanionConfig> companion;
+  std::string
+      words_file;  // the file with the words that the algorithm was taught; empty: it is not taught
+  std::string taught_by;  // … and the program of a companion computer that teaches them
 };
 
 enum class Texts : std::uint8_t {
@@ -134,7 +140,10 @@ struct ActuatorConfig {
   const Unit* at_unit = nullptr;  // of AT; null: it has no speed
   vm::Value min = vm::kValueMin;  // range of TO
   vm::Value max = vm::kValueMax;
+  vm::Value lowest = vm::kValueMin;  // that robot.json may give as the range
+  vm::Value highest = vm::kValueMax;
   Span range_span;
+  vm::ServoPulses pulses;  // of a servo, at the ends of the range
   vm::Value speed_limit = vm::kValueMax;
   Span limit_span;
   std::uint16_t acceleration = 0;  // its limit, as in the image; 0: none
@@ -146,6 +155,10 @@ struct ActuatorConfig {
   std::vector<VerbConfig> verbs;
   std::vector<WordConfig> words;
 
+  // TO is not a place, but a number that it shows.
+  [[nodiscard]] bool shows_numbers() const;
+  // A servo, a motor, wheels: a command can move a part of the robot.
+  [[nodiscard]] bool moves() const;
   // It goes TO a place at a speed of its own, which can have a limit of acceleration.
   [[nodiscard]] bool moves_at_a_speed() const;
   [[nodiscard]] const VerbConfig* find_verb(std::string_view verb) const;

@@ -321,6 +321,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     auto actuator = read_actuator(entry, wiring, diagnostics);
     if (actuator) robot.actuators.push_back(std::move(*actuator));
   });
+  if (const auto* pictures = fields.find("pictures")) read_pictures(*pictures, robot, diagnostics);
   robot.complete = names_and_units_are_known(diagnostics, before);
   if (const auto* groups = fields.find("groups")) read_groups(*groups, robot, diagnostics);
   BehaviorReader behaviors(robot, diagnostics);

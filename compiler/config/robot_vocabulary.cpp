@@ -115,7 +115,9 @@ std::string RobotVocabulary::of_actuator(Part part, std::string_view name) const
     if (part == Part::speed_limit && actuator.at_unit != nullptr)
       return actuator.name.text + " SPEED TO " +
              format_value(std::int64_t{30} * vm::kScale, *actuator.at_unit);
-    if (part != Part::followed || actuator.to_unit == nullptr || actuator.drive) continue;
+    if (part != Part::followed || actuator.to_unit == nullptr || actuator.shows_numbers() ||
+        actuator.drive)
+      continue;
     return actuator.name.text + " TO " + middle(actuator.min, actuator.max, *actuator.to_unit);
   }
   return {};

@@ -1,6 +1,7 @@
 // Reads one entry of "sensors", and a channel of it, which device descriptors have too. Values in robot.json override those of
 // the descriptor. The unit of a channel is read first, because everything else may be written in it.
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -191,23 +192,36 @@ void read_channels(const json::Value& value, const Device& device, SensorConfig&
   check_channel_names(sensor.channels, diagnostics);
 }
 
+void report_without(const char* key, const json::Value& value, const Device& device,
+                    Diagnostics& diagnostics) {
+  diagnostics.report(Code::E0205, "a " + device.name + " has no `" + key + "`")
+      .label(value.span)
+      .helps("remove it; `input` of a channel says what it reads");
+}
+
 // Only for devices with registers: on any other device, all channels would become the same input.
 void read_register(const json::Value& value, const Device& device, SensorConfig& sensor,
                    Diagnostics& diagnostics) {
-  if (!device.has_registers()) {
-    diagnostics.report(Code::E0205, "a " + device.name + " has no `register`")
-        .label(value.span)
-        .helps("remove it; `input` of a channel says what it reads");
-    return;
-  }
+  if (!device.has_registers()) return report_without("register", value, device, diagnostics);
   for (ChannelConfig& channel : sensor.channels)
     channel.input =
         static_cast<std::uint8_t>(read_whole(value, 0, kRegisters - 1, diagnostics).value_or(0));
 }
 
+constexpr std::array<std::string_view, static_cast<std::size_t>(vm::SpiFormat::count_)> kFormats = {
+    "uint16", "int16", "uint16le", "int16le", "uint8", "int8"};
+
+void read_format(const json::Value& value, const Device& device, SensorConfig& sensor,
+                 Diagnostics& diagnostics) {
+  if (device.sensor.driver != vm::DriverId::spi_register)
+    return report_without("format", value, device, diagnostics);
+  sensor.format = static_cast<std::uint8_t>(read_choice(value, kFormats, diagnostics).value_or(0));
+}
+
 // Fed channels are not sampled: they have no period, and go stale only if robot.json says so.
 void make_fed(SensorConfig& sensor, const json::Value* channels, Diagnostics& diagnostics) {
   sensor.driver = vm::DriverId::virtual_sensor;
+  sensor.format = 0;
   for (ChannelConfig& channel : sensor.channels) {
     if (channel.stale_by_rate) channel.stale_ms = 0;
     channel.period_ms = 0;
@@ -235,10 +249,12 @@ void check_place(const Fields& fields, const Device& device, const WiringType& t
     wiring.check_bus(fields, place);
     if (wiring.check_own_address(fields, place, device)) wiring.check_address(fields, place);
   }
+  if (vm::is_on_spi(driver)) wiring.check_spi(fields, place);
   if (vm::is_on_pin(driver)) wiring.check_input(fields, place);
   if (vm::is_by_echo(driver)) wiring.check_echo(fields, place);
+  if (vm::counts_edges(driver)) wiring.check_encoder(fields, place);
   if (vm::is_analog(driver)) wiring.check_analog(fields, place);
-  if (vm::is_microphone(driver)) wiring.check_part(fields, part);
+  if (vm::is_of_board(driver)) wiring.check_part(fields, part);
   const bool hears = vm::is_microphone(driver) && part != nullptr;
   if (vm::is_analog(driver) || hears) wiring.check_converter(fields, hears);
   if (driver == vm::DriverId::virtual_sensor) wiring.check_without_driver(fields, type, place);
@@ -258,11 +274,34 @@ void check_sound_rate(const json::Value* channels, SensorConfig& sensor, Diagnos
             .helps("remove this rate");
 }
 
+// All the edges of a period may come at once.
+void check_encoder_rate(const json::Value* channels, SensorConfig& sensor,
+                        Diagnostics& diagnostics) {
+  if (sensor.period_ms <= vm::kMostEncoderPeriodMs) return;
+  const std::uint16_t period = sensor.period_ms;
+  sensor.period_ms = vm::kMostEncoderPeriodMs;
+  for (const json::Member& member : channels->members)
+    for (const json::Member& key : member.value.members) {
+      if (key.key != "rate") continue;
+      diagnostics
+          .report(
+              Code::E0205,
+              fmt::format("this counts edges for {} ms, but a board counts for at most {} ms at a "
+                          "time",
+                          period, vm::kMostEncoderPeriodMs))
+          .label(key.value.span)
+          .helps(fmt::format("use a rate of at least {}Hz; `change` makes readings rarer",
+                             1000 / vm::kMostEncoderPeriodMs));
+      return;
+    }
+}
+
 // The descriptor's own rate is always possible.
 void check_rate(const Fields& fields, const Device& device, SensorConfig& sensor,
                 Diagnostics& diagnostics) {
   const auto* const channels = fields.find("channels");
   if (vm::is_microphone(sensor.driver)) return check_sound_rate(channels, sensor, diagnostics);
+  if (vm::counts_edges(sensor.driver)) return check_encoder_rate(channels, sensor, diagnostics);
   // What is fed has another driver and no period.
   const std::uint16_t shortest = device.shortest_period_ms();
   if (channels == nullptr || sensor.driver != device.sensor.driver) return;
@@ -319,19 +358,30 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   sensor.name = *name;
   place_channels(sensor);
   if (known == nullptr) return sensor;
+  const bool is_driven = device.has_driver;
   if (type != nullptr) {
     const Wiring place = wiring.read_sensor(fields, *type, part, device.sensor.driver);
     sensor.bus = place.bus;
     sensor.address = place.place;
-    if (type->name != "VIRTUAL" && device.has_driver)
+    if (type->name != "VIRTUAL" && is_driven)
       check_place(fields, device, *type, part, wiring, place);
+    else if (type->name != "VIRTUAL")
+      wiring.check_without_driver(fields, *type, place);
   }
   if (const auto* number = fields.find("register"))
     read_register(*number, device, sensor, diagnostics);
+  if (const auto* format = fields.find("format")) read_format(*format, device, sensor, diagnostics);
   const auto* channels = fields.find("channels");
   if (channels != nullptr) read_channels(*channels, device, sensor, diagnostics);
   const bool is_virtual = type != nullptr && type->name == "VIRTUAL";
-  if (is_virtual || !device.has_driver) make_fed(sensor, channels, diagnostics);
+  if (vm::counts_edges(device.sensor.driver)) {
+    if (!is_virtual) scale_encoder(fields, sensor, channels, diagnostics);
+  } else {
+    for (const char* key : {"pulses_per_turn", "wheel"})
+      if (const auto* foreign = fields.find(key))
+        report_without(key, *foreign, device, diagnostics);
+  }
+  if (is_virtual || !is_driven) make_fed(sensor, channels, diagnostics);
   for (const ChannelConfig& channel : sensor.channels)
     if (channel.period_ms != 0 && (sensor.period_ms == 0 || channel.period_ms < sensor.period_ms))
       sensor.period_ms = channel.period_ms;

@@ -1,5 +1,6 @@
 #include "compiler/config/values.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
@@ -236,6 +237,28 @@ std::optional<Range> read_range(const json::Value& value, const Unit& unit,
   if (*low < *high) return Range{*low, *high};
   diagnostics.report(Code::E0205, "the lowest value of this range must be below the highest")
       .label(value.span);
+  return std::nullopt;
+}
+
+std::optional<std::array<std::uint16_t, 2>> read_microseconds(const json::Value& value,
+                                                              Diagnostics& diagnostics) {
+  constexpr std::size_t kMostDigits = 9;
+  std::array<std::uint16_t, 2> times{};
+  std::size_t good = 0;
+  for (const json::Value& item : value.items) {
+    const Written written = split(item.text);
+    const auto number = parse_decimal(written.number);
+    const bool known = written.unit == "ms" || written.unit == "us";
+    if (!number || !known || good == times.size() || written.number.size() > kMostDigits) break;
+    std::int64_t time = number->mantissa * (written.unit == "ms" ? 1000 : 1);
+    for (unsigned d = 0; d < number->decimals; ++d)
+      time /= 10;
+    times.at(good++) = static_cast<std::uint16_t>(std::clamp<std::int64_t>(time, 0, UINT16_MAX));
+  }
+  if (good == times.size() && value.items.size() == good) return times;
+  diagnostics.report(Code::E0204, "these must be two lengths of a pulse, each in `ms` or `us`")
+      .label(value.span)
+      .helps("write them like `[\"0.6ms\", \"2.4ms\"]`");
   return std::nullopt;
 }
 

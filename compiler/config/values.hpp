@@ -2,6 +2,7 @@
 // JSON numbers or strings, with a unit where that makes sense.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,6 +45,9 @@ struct Range {
 [[nodiscard]] std::optional<Range> read_range(const json::Value& value, const Unit& unit,
                                               Diagnostics& diagnostics);
 
+// ["0.6ms", "2400us"]: two times in whole microseconds.
+[[nodiscard]] std::optional<std::array<std::uint16_t, 2>> read_microseconds(
+    const json::Value& value, Diagnostics& diagnostics);
 // "50Hz": milliseconds between two samples, 1 … 65535.
 [[nodiscard]] std::optional<std::uint16_t> read_rate(const json::Value& value,
                                                      Diagnostics& diagnostics);

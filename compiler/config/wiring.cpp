@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +15,13 @@
 #include "vm/drivers.hpp"
 
 namespace robosync::compiler {
+
+// Pins for a use that not every board has.
+struct SpecialPins {
+  const char *board_has_no, *pin_is_not, *those, *boards;
+  bool (*have)(const Board&);
+};
+
 namespace {
 
 constexpr std::array<WiringType, 7> kTypes = {{
@@ -37,10 +45,10 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Release::cou
 std::string help_for_echo(const Board& board) {
   const std::string says = "an output and an input, named as on the part";
   const auto output = std::ranges::find(board.outputs, true, &Board::Pins::power);
-  if (output == board.outputs.end() || board.inputs.empty())
+  if (output == board.outputs.end() || board.echoes.empty())
     return "write `trigger` and `echo`: " + says;
   return "write `\"trigger\": " + std::to_string(output->first) +
-         ", \"echo\": " + std::to_string(board.inputs.front().first) + "`: " + says;
+         ", \"echo\": " + std::to_string(board.echoes.front().first) + "`: " + says;
 }
 
 // The boards with a part of this device, and the names of the parts.
@@ -54,24 +62,30 @@ std::string boards_with(std::string_view device) {
 }
 
 // The boards for which `have` is true.
-template <class Have>
-std::string boards_that(Have have) {
+std::string boards_that(bool (*have)(const Board&)) {
   std::vector<std::string> boards;
   for (std::size_t i = 0; i < board_names().size(); ++i)
     if (have(board_at(i))) boards.emplace_back(board_names()[i]);
   return list_names(boards, "and");
 }
 
-std::string boards_with_enables() {
-  return boards_that([](const Board& board) { return !board.enables.empty(); });
-}
+constexpr SpecialPins kAnalog = {
+    "analog inputs", "an analog input", "its analog inputs are the pins ",
+    "boards that have some: ", [](const Board& board) { return !board.analog.empty(); }};
+constexpr SpecialPins kPanel = {
+    "pin for a panel or strip of lights", "for a panel or strip of lights", "pins that are: ",
+    "boards that have one: ", [](const Board& board) { return !board.panels.empty(); }};
+constexpr SpecialPins kEnable = {
+    "pin for the enable input of a chip", "for the enable input of a chip",
+    "only a pin that is high from the start is: ", "boards that have one: ",
+    [](const Board& board) { return !board.enables.empty(); }};
+constexpr SpecialPins kSelect = {
+    "pin for the select input of a part", "for the select input of a part",
+    "pins that are: ", kEnable.boards, [](const Board& board) { return !board.selects.empty(); }};
 
-std::string boards_with_panels() {
-  return boards_that([](const Board& board) { return !board.panels.empty(); });
-}
-
-std::string boards_with_analog() {
-  return boards_that([](const Board& board) { return !board.analog.empty(); });
+std::string text_of(const Board::Pins& pins) {
+  return pins.first == pins.last ? std::to_string(pins.first)
+                                 : std::to_string(pins.first) + " to " + std::to_string(pins.last);
 }
 
 }  // namespace
@@ -184,9 +198,12 @@ void WiringReader::take_drive(const Fields& fields, const WiringType& type) {
 void WiringReader::take_pin(std::uint16_t pin, Span span) {
   const auto [first, added] = pins_.emplace(pin, span);
   if (added) return;
-  diagnostics_.report(Code::E0207, "pin " + std::to_string(pin) + " is used twice")
-      .label(span)
-      .label(first->second, "first used here", false);
+  Diagnostic& report =
+      diagnostics_.report(Code::E0207, "pin " + std::to_string(pin) + " is used twice")
+          .label(span)
+          .label(first->second, "first used here", false);
+  if (const Board::Pins& bus = board_.spi_pins; on_spi_ && pin >= bus.first && pin <= bus.last)
+    report.helps("the SPI bus of this board has the pins " + text_of(bus));
 }
 
 // The default is a contact to GND on a pin with a pull-up, the most common wiring.
@@ -244,6 +261,15 @@ void WiringReader::check_converter(const Fields& fields, bool microphone) {
       .helps("with `\"type\": \"VIRTUAL\"` one of them can be fed");
 }
 
+namespace {
+
+// An entry without an address has the one that its device is delivered with.
+const json::Value& assume_address(Fields& fields, std::uint16_t usual) {
+  return fields.assume("address", fmt::format("0x{:02x}", usual), fields.find("device")->span);
+}
+
+}  // namespace
+
 // ---- servos on a chip
 
 namespace {
@@ -272,25 +298,25 @@ ChipWiring WiringReader::read_chip(Fields& fields) {
   ServoChip chip;
   if (const auto* bus = fields.find("bus"))
     chip.bus = static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
-  const auto* address = fields.require("address", what);
+  const json::Value& address = assume_address(fields, vm::kFirstChipAddress);
   const auto* channel = fields.require("channel", what);
   const auto* enable = fields.require("enable", what);
   check_bus(fields, {chip.bus, 0});
-  if (address == nullptr || channel == nullptr || enable == nullptr) return wiring;
-  const auto place = read_address(*address, vm::kFirstChipAddress, vm::kLastAddress, diagnostics_);
+  if (channel == nullptr || enable == nullptr) return wiring;
+  const auto place = read_address(address, vm::kFirstChipAddress, vm::kLastAddress, diagnostics_);
   const auto output = read_whole(*channel, 0, vm::kChipChannels - 1, diagnostics_);
   const auto pin = read_whole(*enable, 0, UINT8_MAX, diagnostics_);
   if (!place || !output || !pin) return wiring;
   if (*place == vm::kAllChipsAddress) {
     diagnostics_.report(Code::E0205, "no PCA9685 can have this address: all of them answer to it")
-        .label(address->span);
+        .label(address.span);
     return wiring;
   }
   chip.address = static_cast<std::uint16_t>(*place);
   check_address(fields, {chip.bus, chip.address});
   chip.enable = static_cast<std::uint8_t>(*pin);
   wiring.channel = static_cast<std::uint16_t>(*output);
-  take_chip(chip, *address, *enable);
+  take_chip(chip, address, *enable);
   if (on_buses_[{chip.bus, chip.address}].chip != chip) return wiring;
   wiring.chip = chip;
   take_channel(chip, wiring.channel, channel->span);
@@ -316,7 +342,7 @@ void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
   if (added) {
     known.enable = enable.span;
     take_pin(chip.enable, enable.span);
-    return check_enable(enable, chip.enable);
+    return check_special(enable, chip.enable, board_.enables, kEnable);
   }
   if (!known.chip) return report_taken(known, {chip.bus, chip.address}, address.span);
   if (known.chip->enable == chip.enable) return;
@@ -332,7 +358,7 @@ void WiringReader::take_chip(const ServoChip& chip, const json::Value& address,
   known.chip = chip;
   known.enable = enable.span;
   take_pin(chip.enable, enable.span);
-  check_enable(enable, chip.enable);
+  check_special(enable, chip.enable, board_.enables, kEnable);
 }
 
 void WiringReader::report_taken(const OnBus& known, const Wiring& place, Span span) {
@@ -351,29 +377,15 @@ Wiring WiringReader::read_display(Fields& fields, const WiringType& type) {
     wiring.bus =
         static_cast<std::uint8_t>(read_whole(*bus, 0, UINT8_MAX, diagnostics_).value_or(0));
   check_bus(fields, wiring);
-  const auto* address = fields.require("address", "an " + fields.find("device")->text);
-  if (address == nullptr) return wiring;
+  const json::Value& address = assume_address(fields, vm::kFirstDisplayAddress);
   const auto place =
-      read_address(*address, vm::kFirstDisplayAddress, vm::kLastDisplayAddress, diagnostics_);
+      read_address(address, vm::kFirstDisplayAddress, vm::kLastDisplayAddress, diagnostics_);
   if (!place) return wiring;
   wiring.place = static_cast<std::uint16_t>(*place);
   const auto [entry, added] =
-      on_buses_.emplace(std::pair(wiring.bus, wiring.place), OnBus{.span = address->span});
-  if (!added) report_taken(entry->second, wiring, address->span);
+      on_buses_.emplace(std::pair(wiring.bus, wiring.place), OnBus{.span = address.span});
+  if (!added) report_taken(entry->second, wiring, address.span);
   return wiring;
-}
-
-void WiringReader::check_enable(const json::Value& value, std::uint16_t pin) {
-  if (board_.has_enable(pin)) return;
-  if (board_.enables.empty())
-    diagnostics_
-        .report(Code::E0205,
-                "the board " + board_.name + " has no pin for the enable input of a chip")
-        .label(value.span)
-        .helps("boards that have one: " + boards_with_enables());
-  else
-    report_no_pin(value, pin, " is not for the enable input of a chip",
-                  "only a pin that is high from the start is: ", board_.enables);
 }
 
 void WiringReader::check_safe(const ServoChip& chip, vm::Release safe, Span span) {
@@ -424,7 +436,8 @@ Wiring WiringReader::read_sensor(Fields& fields, const WiringType& type, const B
                                  vm::DriverId driver) {
   if (type.name != "VIRTUAL" && vm::is_by_echo(driver))
     return read_echo(fields, "the device `" + fields.find("device")->text + "`");
-  if (part == nullptr && vm::is_microphone(driver)) return {};  // check_part() reports it
+  if (type.name != "VIRTUAL" && vm::counts_edges(driver)) return read_encoder(fields, type);
+  if (part == nullptr && vm::is_of_board(driver)) return {};  // check_part() reports it
   Wiring wiring = read(fields, type, part, false, "a sensor of type " + std::string(type.name));
   if (part == nullptr && type.name == "GPIO") wiring.bus = read_active(fields);
   if (type.name == "I2C") take_address(fields, wiring, part, vm::measures_when_told(driver));
@@ -469,6 +482,9 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
   if (type.name == "VIRTUAL") return wiring;
   if (part != nullptr) return read_part(fields, *part);
   report_foreign(fields, type);
+  if (const Device* const chip = type.address ? chip_of(fields, nullptr) : nullptr;
+      chip != nullptr && chip->addresses.size() == 1)
+    assume_address(fields, chip->addresses.front().first);
   if (type.name == "UART") wiring.bus = vm::kFirstPlayerLine;
   if (const auto* bus = type.bus ? fields.find("bus") : nullptr)
     wiring.bus = static_cast<std::uint8_t>(
@@ -485,15 +501,31 @@ Wiring WiringReader::read(Fields& fields, const WiringType& type, const Board::P
 }
 
 void WiringReader::check_bus(const Fields& fields, const Wiring& wiring) {
-  if (wiring.bus < board_.i2c_buses || board_.named == Board::Named::wrongly) return;
+  check_bus(fields, wiring, "I2C", board_.i2c_buses);
+}
+
+void WiringReader::check_spi(const Fields& fields, const Wiring& wiring) {
+  check_bus(fields, wiring, "SPI", board_.spi_buses);
+  if (const auto* pin = fields.find("pin"))
+    check_special(*pin, wiring.place, board_.selects, kSelect);
+  if (wiring.bus >= board_.spi_buses || std::exchange(on_spi_, true)) return;
+  const auto* said = fields.find(fields.find("type") != nullptr ? "type" : "device");
+  for (std::uint16_t pin = board_.spi_pins.first; pin <= board_.spi_pins.last; ++pin)
+    if (pin != wiring.place) take_pin(pin, said->span);  // a select pin of these has been reported
+}
+
+void WiringReader::check_bus(const Fields& fields, const Wiring& wiring, const char* kind,
+                             std::uint32_t buses) {
+  if (wiring.bus < buses || board_.named == Board::Named::wrongly) return;
   const auto* bus = fields.find("bus");
   if (bus == nullptr) bus = fields.find("type");
-  diagnostics_
-      .report(Code::E0205,
-              "the board " + board_.name + " has no I2C bus " + std::to_string(wiring.bus))
-      .label(bus->span)
-      .helps(board_.i2c_buses == 1 ? "it has only bus 0"
-                                   : "its buses are 0 to " + std::to_string(board_.i2c_buses - 1));
+  Diagnostic& report = diagnostics_
+                           .report(Code::E0205, fmt::format("the board {} has no {} bus {}",
+                                                            board_.name, kind, wiring.bus))
+                           .label(bus->span);
+  if (buses != 0)
+    report.helps(buses == 1 ? "it has only bus 0"
+                            : "its buses are 0 to " + std::to_string(buses - 1));
 }
 
 // Each serial line connects one player.
@@ -513,6 +545,7 @@ void WiringReader::check_line(const Fields& fields, const Wiring& wiring) {
     return;
   }
   const auto [first, added] = lines_.emplace(wiring.bus, span);
+  if (added && board_.player_pin) take_pin(*board_.player_pin, span);
   if (added) return;
   diagnostics_.report(Code::E0207, line + " is used twice")
       .label(span)
@@ -533,7 +566,7 @@ void WiringReader::check_output(const Fields& fields, const Wiring& wiring, vm::
 
 void WiringReader::check_panel(const Fields& fields, const Wiring& wiring) {
   const auto* pin = fields.find("pin");
-  if (pin != nullptr && !board_.has_panel(wiring.place)) report_no_panel(*pin, wiring.place);
+  if (pin != nullptr) check_special(*pin, wiring.place, board_.panels, kPanel);
   const Span span = fields.find("device")->span;
   if (!panel_) {
     panel_ = span;
@@ -544,16 +577,16 @@ void WiringReader::check_panel(const Fields& fields, const Wiring& wiring) {
       .label(*panel_, "the first one", false);
 }
 
-void WiringReader::report_no_panel(const json::Value& value, std::uint16_t pin) {
-  if (!board_.panels.empty())
-    return report_no_pin(value, pin, " is not for a panel or strip of lights",
-                         "pins that are: ", board_.panels);
+void WiringReader::check_special(const json::Value& value, std::uint16_t pin,
+                                 std::span<const Board::Pins> those, const SpecialPins& use) {
+  for (const Board::Pins& pins : those)
+    if (pin >= pins.first && pin <= pins.last) return;
+  if (!those.empty())
+    return report_no_pin(value, pin, std::string(" is not ") + use.pin_is_not, use.those, those);
   if (board_.named == Board::Named::wrongly) return;
-  diagnostics_
-      .report(Code::E0205,
-              "the board " + board_.name + " has no pin for a panel or strip of lights")
+  diagnostics_.report(Code::E0205, "the board " + board_.name + " has no " + use.board_has_no)
       .label(value.span)
-      .helps("boards that have one: " + boards_with_panels());
+      .helps(use.boards + boards_that(use.have));
 }
 
 // A pin that is limited to servo pulses cannot drive a motor (policy::can_drive()).
@@ -581,21 +614,14 @@ void WiringReader::check_echo(const Fields& fields, const Wiring& wiring) {
   const auto* echo = fields.find("echo");
   if (trigger == nullptr || echo == nullptr) return;
   check_output_pin(*trigger, wiring.bus, true);
-  if (!board_.has_input(wiring.place))
-    report_no_pin(*echo, wiring.place, " is not an input", "its inputs are the pins ",
-                  board_.inputs);
+  if (!board_.has_echo(wiring.place))
+    report_no_pin(*echo, wiring.place, " is not an input for an echo",
+                  "those that are: ", board_.echoes);
 }
 
 void WiringReader::check_analog(const Fields& fields, const Wiring& wiring) {
-  const auto* pin = fields.find("pin");
-  if (pin == nullptr || board_.has_analog(wiring.place)) return;
-  if (board_.analog.empty())
-    diagnostics_.report(Code::E0205, "the board " + board_.name + " has no analog inputs")
-        .label(pin->span)
-        .helps("boards that have some: " + boards_with_analog());
-  else
-    report_no_pin(*pin, wiring.place, " is not an analog input", "its analog inputs are the pins ",
-                  board_.analog);
+  if (const auto* pin = fields.find("pin"))
+    check_special(*pin, wiring.place, board_.analog, kAnalog);
 }
 
 void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
@@ -607,9 +633,7 @@ void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
     return;
   std::vector<std::string> pins;
   for (const Board::Pins& range : those)
-    pins.push_back(range.first == range.last
-                       ? std::to_string(range.first)
-                       : std::to_string(range.first) + " to " + std::to_string(range.last));
+    pins.push_back(text_of(range));
   diagnostics_
       .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(pin) + is_no)
       .label(value.span)

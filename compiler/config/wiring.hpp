@@ -16,6 +16,7 @@
 namespace robosync::compiler {
 
 struct Device;
+struct SpecialPins;
 
 struct WiringType {
   std::string_view name;
@@ -23,12 +24,13 @@ struct WiringType {
   bool bus, address, pin;  // the keys that it has
 };
 [[nodiscard]] std::span<const WiringType> wiring_types();
+// For messages.
 
 // Reads the "type" of a sensor or actuator. Reports a missing or wrong one and returns null.
 [[nodiscard]] const WiringType* read_type(Fields& fields, bool is_sensor, Diagnostics& diagnostics);
 
 struct Wiring {
-  // Of a sensor of type GPIO: vm::ActiveLevel, or its trigger pin. Of an actuator with two pins: the second one.
+  // Of a sensor of type GPIO: vm::ActiveLevel, its trigger pin, or the second pin of an encoder. Of an actuator with two pins: the second one.
   std::uint8_t bus = 0;
   std::uint16_t place = 0;  // I2C address or pin
 };
@@ -61,6 +63,8 @@ public:
   void check_safe(const ServoChip& chip, vm::Release safe, Span span);
   // For drivers that use them: checks that the board has them.
   void check_bus(const Fields& fields, const Wiring& wiring);
+  // Of a part on SPI: its bus, whose pins the first such part takes, and its select pin.
+  void check_spi(const Fields& fields, const Wiring& wiring);
   // Of a device on I2C: no part of the board has its address for itself.
   void check_address(const Fields& fields, const Wiring& wiring);
   // Its address is one that its pins can select; otherwise this is reported, and the result false.
@@ -71,13 +75,15 @@ public:
   void check_volts(const Fields& fields, vm::Value usual);
   void check_input(const Fields& fields, const Wiring& wiring);
   void check_echo(const Fields& fields, const Wiring& wiring);
+  // Of an encoder; a robot has at most vm::kMaxEncoders.
+  void check_encoder(const Fields& fields, const Wiring& wiring);
   void check_analog(const Fields& fields, const Wiring& wiring);
   // For a sound player.
   void check_line(const Fields& fields, const Wiring& wiring);
   void check_output(const Fields& fields, const Wiring& wiring, vm::DriverId driver);
   // For a panel or strip of lights. A robot has at most one.
   void check_panel(const Fields& fields, const Wiring& wiring);
-  // For lights, speakers and microphones, which can only be parts of a board.
+  // For lights, speakers and sensors that can only be parts of a board.
   void check_part(const Fields& fields, const Board::Part* part);
   // A microphone and the analog inputs use the same converter, so a robot has either. Reported once.
   void check_converter(const Fields& fields, bool microphone);
@@ -105,15 +111,18 @@ private:
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
   void refuse_pins(const Fields& fields);
   void take_channel(const ServoChip& chip, std::uint16_t channel, Span span);
-  void check_enable(const json::Value& value, std::uint16_t pin);
+  void check_bus(const Fields& fields, const Wiring& wiring, const char* kind, std::uint32_t buses);
   std::uint16_t read_pin(const json::Value& value, std::uint16_t last = UINT16_MAX - 1);
   void read_pins(Fields& fields, bool two, const std::string& what, Wiring& wiring);
   Wiring read_echo(Fields& fields, const std::string& what);
+  Wiring read_encoder(Fields& fields, const WiringType& type);
   std::uint8_t read_active(const Fields& fields);
   void take_pin(std::uint16_t pin, Span span);
   void take_part(const Board::Part& part, Span span);
   void report_foreign(const Fields& fields, const WiringType& type);
-  void report_no_panel(const json::Value& value, std::uint16_t pin);
+  // `those`: the pins of the board for this use.
+  void check_special(const json::Value& value, std::uint16_t pin,
+                     std::span<const Board::Pins> those, const SpecialPins& use);
   void check_output_pin(const json::Value& value, std::uint16_t pin, bool power);
   void report_no_pin(const json::Value& value, std::uint16_t pin, const std::string& is_no,
                      const std::string& those_are, std::span<const Board::Pins> those);
@@ -122,7 +131,9 @@ private:
   Diagnostics& diagnostics_;
   std::map<std::uint16_t, Span> pins_;
   std::map<std::uint8_t, Span> lines_;
+  unsigned encoders_ = 0;
   std::optional<Span> panel_, drive_;
+  bool on_spi_ = false;                                               // a part has been read
   std::optional<Span> microphone_, analog_;                           // the first ones
   std::map<const Board::Part*, Span> parts_;                          // without a pin
   std::map<std::pair<std::uint8_t, std::uint16_t>, OnBus> on_buses_;  // by bus and address

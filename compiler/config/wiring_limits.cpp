@@ -30,7 +30,7 @@ std::vector<std::string> listed(const Device& device) {
 
 // Where its voltage comes in. On I2C that is where the pull-ups of the part lead.
 const json::Value* input_of(const Fields& fields) {
-  for (const char* key : {"echo", "pin", "address"})
+  for (const char* key : {"echo", "pin", "pins", "address"})
     if (const auto* value = fields.find(key)) return value;
   return nullptr;
 }

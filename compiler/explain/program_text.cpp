@@ -10,6 +10,7 @@
 #include "compiler/explain/actuators.hpp"
 #include "compiler/explain/conditions.hpp"
 #include "compiler/explain/rules.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler::explain {
 namespace {
@@ -58,6 +59,7 @@ public:
       if (const auto* node = std::get_if<ast::Rule>(&item.node)) tell(*node, item.span);
     });
     tell_defines();
+    tell_what_moves();
     return std::string(kHowItWorks) + text_;
   }
 
@@ -81,6 +83,43 @@ private:
       const auto* const node = std::get_if<ast::Define>(&item.node);
       if (node != nullptr && (is_own(item) || used_defines_.contains(node))) tell(*node, item.span);
     });
+  }
+
+  // ---- the robot: what limits a movement, what ends it, and what lets the part go again
+  static std::string_view state(vm::Release release, const ActuatorConfig& actuator) {
+    if (release == vm::Release::hold) return "stays as it is";
+    if (release == vm::Release::rest) return "goes to its rest position";
+    const bool turns =
+        actuator.to_unit != nullptr && actuator.to_unit->dimension == vm::Dimension::angle;
+    return turns ? "goes limp" : "is off";
+  }
+
+  static std::string limits(const ActuatorConfig& actuator) {
+    if (actuator.at_unit == nullptr) return {};
+    std::string text;
+    if (actuator.speed_limit != vm::kValueMax)
+      text = fmt::format(" It goes no faster than {}.",
+                         format_value(actuator.speed_limit, *actuator.at_unit));
+    if (actuator.acceleration != 0)
+      text += fmt::format(" Its speed changes by at most {}.",
+                          format_acceleration(actuator.acceleration, *actuator.at_unit));
+    return text;
+  }
+
+  void tell_what_moves() {
+    if (robot_ == nullptr || std::ranges::none_of(robot_->actuators, &ActuatorConfig::moves))
+      return;
+    say(0, "\nWhat moves, as robot.json says:");
+    for (const ActuatorConfig& actuator : robot_->actuators) {
+      if (!actuator.moves()) continue;
+      say(kIndent, fmt::format("{}:{} In a halt it {}; when its response ends, it {}.",
+                               actuator.name.text, limits(actuator), state(actuator.safe, actuator),
+                               state(actuator.on_release, actuator)));
+    }
+    say(kIndent,
+        "A halt is a SAFETY rule, `rsc stop` or a fault. A SAFETY rule lets go as its RESUME "
+        "says,\n"
+        "  or, without one, when you upload a program; `rsc resume` lets go after the other two.");
   }
 
   bool is_own(const ast::Item& item) const { return item.span.file == own_file_; }

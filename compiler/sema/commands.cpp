@@ -84,7 +84,7 @@ std::vector<ir::Command> Commands::translate(const ast::Command& command,
     Diagnostics& here = each.empty() ? diagnostics_ : repeated;
     auto result = for_actuator(actuator, command, *given, here);
     for (const Diagnostic& d : repeated.all())
-      if (d.code != Code::N0002 && d.code != Code::W0221)
+      if (d.code != Code::N0002 && d.code != Code::W0221 && d.code != Code::W0224)
         diagnostics_.report(d.code, d.message) = d;
     if (!result) return {};
     each.push_back(std::move(*result));
@@ -339,7 +339,9 @@ bool check_value(const ActuatorConfig& actuator, vm::Param param, const Typed& n
   const Unit& unit = *number.unit;
   if (param == vm::Param::to && (value < actuator.min || value > actuator.max)) {
     diagnostics
-        .report(Code::E0506, actuator.name.shown() + " cannot reach " + format_value(value, unit))
+        .report(Code::E0506, actuator.name.shown() +
+                                 (actuator.shows_numbers() ? " cannot show " : " cannot reach ") +
+                                 format_value(value, unit))
         .label(number.span)
         .label(actuator.range_span,
                "it goes from " + format_value(actuator.min, unit) + " to " +
@@ -389,12 +391,7 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
   const std::string verbs = param == vm::Param::by ? verb_by(actuator, number.dimension()) : "";
   if (!verbs.empty())
     d.helps(verbs + " takes " + std::string(dimension_phrase(number.dimension())));
-  if (number.digits.empty() && number.dimension() == vm::Dimension::number && verbs.empty()) {
-    const bool is_source = number.source.size() == number.span.end - number.span.begin;
-    d.helps("multiplied by a unit, a number becomes " +
-            std::string(dimension_phrase(unit.dimension)) + ": `" +
-            (is_source ? number.source : "(…)") + " * 1" + std::string(unit.spelling) + "`");
-  }
+  if (verbs.empty()) help_with_unit(d, number, unit);
   if (number.digits.empty() || !verbs.empty()) return;
   const std::string mended = number.digits + std::string(unit.spelling);
   d.helps("did you mean `" + mended + "`?").fix(number.span, mended, Applicability::likely);
@@ -445,13 +442,6 @@ std::optional<ir::Command> Commands::for_actuator(std::size_t actuator, const as
   return result;
 }
 
-// `SAY visitors`: a number alone, where a text is possible and BY has no meaning.
-bool Commands::is_to_be_said(const VerbConfig& verb, const Given& given) {
-  return given.is_number && given.param == vm::Param::by &&
-         given.argument->preposition == ast::Preposition::none && verb.texts == Texts::any &&
-         !verb.has(vm::Param::by);
-}
-
 bool Commands::add(const Recipient& to, const Given& given, ir::Command& result) const {
   const ast::Argument& argument = *given.argument;
   if (is_to_be_said(to.verb, given)) {
@@ -461,7 +451,8 @@ bool Commands::add(const Recipient& to, const Given& given, ir::Command& result)
         to, {&argument, {}, {}, false, number.text(), argument.span, std::move(number.values())},
         result);
   }
-  if (given.is_number) return add_number(to, given, result);
+  if (given.is_number)
+    return add_number(to, given, is_to_be_shown(to, given) ? vm::Param::to : given.param, result);
   if (given.text) return add_text(to, given, result);
   return add_word(to, std::get<ast::Word>(argument.value), argument.span, result);
 }
@@ -477,6 +468,7 @@ bool Commands::add_word(const Recipient& to, const ast::Word& word, Span span,
     report_foreign_word(to, *known, span);
     return false;
   }
+  warn_of_hidden(to, word);
   if (is_given(result, known->param)) {
     const bool word_first = result.word && result.word->param == known->param;
     const std::string first = word_first ? result.word->name : spelling(known->param);
@@ -514,49 +506,6 @@ void Commands::report_foreign_word(const Recipient& to, const WordConfig& word, 
   if (!verbs.empty()) d.helps("`" + word.name + "` goes with " + list_names(verbs));
 }
 
-// Does a number or a value in brackets follow, as after TO, BY, AT, OVER and FOR?
-static bool may_be_preposition(const ast::Command& command, const ast::Word& word) {
-  const auto& arguments = command.arguments;
-  const auto next = std::ranges::find_if(
-      arguments, [&](const ast::Argument& one) { return one.span.begin > word.name.span.begin; });
-  const auto* const amount =
-      next == arguments.end() ? nullptr : std::get_if<ast::Amount>(&next->value);
-  return amount != nullptr && !amount->times && next->preposition == ast::Preposition::none;
-}
-
-void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
-  if (is_sensor_meant(to, word, names_)) return;
-  Diagnostic& d = to.diagnostics
-                      .report(Code::E0501, to.actuator.name.shown() + " does not know the word " +
-                                               word.name.shown())
-                      .label(word.name.span);
-  const std::size_t targets_known = robot_.actuators.size() + robot_.groups.size();
-  if (!diagnostics_.may_search(to.actuator.words.size() + targets_known)) return;
-  std::vector<std::string> words;
-  for (const WordConfig& known : to.actuator.words)
-    if (!known.text) words.push_back(known.name);
-  auto candidates = words;
-  const auto targets = names_.target_names();
-  candidates.insert(candidates.end(), targets.begin(), targets.end());
-  // Words of RSL that may come later in a line of commands.
-  for (const char* const keyword :
-       {"TO", "BY", "OVER", "AT", "FOR", "MARGIN", "TIMES", "WITH", "ELSE", "END"})
-    candidates.emplace_back(keyword);
-  // Not the word itself: it is a word of RSL, or another actuator, in the wrong place.
-  std::erase_if(candidates, [&](const auto& one) { return same_name(one, word.name.text); });
-  if (did_you_mean(d, word.name.span, word.name.text, candidates) &&
-      !may_be_preposition(to.command, word))
-    doubt_keyword(d);
-  names_.doubt_group(d, word.name.text);
-  if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
-  if (names_.find_list(word.name.text) != nullptr)
-    d.helps("it is a LIST; choose one of its texts: `ANY " + std::string(word.name.text) + "`");
-  if (d.help.empty() && to.verb.texts == Texts::listed)
-    help_with_files(to, d);
-  else if (d.help.empty() && to.verb.texts == Texts::any)
-    d.helps("put words to say or play in quotes: `\"" + std::string(word.name.text) + "\"`");
-}
-
 namespace {
 
 void report_unknown_text(const ActuatorConfig& actuator, const std::string& text, Span span,
@@ -579,11 +528,7 @@ bool Commands::add_text(const Recipient& to, const Given& given, ir::Command& re
   const std::string& text = *given.text;
   const Span span = given.argument->span;
   if (to.verb.texts == Texts::none) {
-    Diagnostic& d =
-        to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text").label(span);
-    if (const WordConfig* const word = to.actuator.find_word(text))
-      d.helps("write the word without quotes: `" + word->name + "`")
-          .fix(given.text_span, word->name, Applicability::likely);
+    report_no_text(to, given);
     return false;
   }
   if (is_given(result, vm::Param::item) || takes_its_words(result)) {
@@ -675,24 +620,24 @@ void Commands::report_not_taken(const Recipient& to, const Given& given) {
     d.helps(taken_by(to.verb));
 }
 
-bool Commands::add_number(const Recipient& to, const Given& given, ir::Command& result) const {
+bool Commands::add_number(const Recipient& to, const Given& given, vm::Param param,
+                          ir::Command& result) const {
   const ActuatorConfig& actuator = to.actuator;
   Diagnostics& diagnostics = to.diagnostics;
   const Span span = given.argument->span;
-  if (!to.verb.has(given.param)) {
+  if (!to.verb.has(param)) {
     report_not_taken(to, given);
     return false;
   }
-  if (given.param == vm::Param::for_ && takes_its_words(result))
+  if (param == vm::Param::for_ && takes_its_words(result))
     result.word = ir::Word{result.word->name, vm::Param::item, 0};
-  if (is_given(result, given.param)) {
-    report_twice(span, "`" + spelling(given.param) + "`", diagnostics);
+  if (is_given(result, param)) {
+    report_twice(span, "`" + spelling(param) + "`", diagnostics);
     return false;
   }
   Typed number = given.number;
-  if (!fit_parameter(actuator, given.param, number, diagnostics, diagnostics, &to.verb))
-    return false;
-  result.arguments.push_back({given.param, std::move(number.code)});
+  if (!fit_parameter(actuator, param, number, diagnostics, diagnostics, &to.verb)) return false;
+  result.arguments.push_back({param, std::move(number.code)});
   return true;
 }
 

@@ -157,12 +157,17 @@ private:
   std::optional<ir::Command> for_actuator(std::size_t actuator, const ast::Command& command,
                                           const std::vector<Given>& given,
                                           Diagnostics& diagnostics) const;
+  static bool is_number_alone(const Given& given);
   static bool is_to_be_said(const VerbConfig& verb, const Given& given);
+  static bool is_to_be_shown(const Recipient& to, const Given& given);
   bool add(const Recipient& to, const Given& given, ir::Command& result) const;
   bool add_word(const Recipient& to, const ast::Word& word, Span span, ir::Command& result) const;
+  void report_no_text(const Recipient& to, const Given& given) const;
+  void warn_of_hidden(const Recipient& to, const ast::Word& word) const;
   bool add_text(const Recipient& to, const Given& given, ir::Command& result) const;
   bool say_values(const Recipient& to, const Given& given, ir::Command& result) const;
-  bool add_number(const Recipient& to, const Given& given, ir::Command& result) const;
+  bool add_number(const Recipient& to, const Given& given, vm::Param param,
+                  ir::Command& result) const;
   static void report_not_taken(const Recipient& to, const Given& given);
   static void report_foreign_word(const Recipient& to, const WordConfig& word, Span span);
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;

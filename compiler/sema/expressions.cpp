@@ -506,6 +506,11 @@ void report_amount(const Typed& number, const Wanted& wanted, Diagnostics& diagn
                                    ", but this is " +
                                    std::string(dimension_phrase(number.dimension())))
           .label(number.digits.empty() ? number.span : number.unit_span);
+  help_with_unit(d, number, *wanted.unit);
+  if (wanted.remembered && number.unit != nullptr &&
+      wanted.unit->dimension == vm::Dimension::number)
+    d.helps("to keep the unit, start it with one: `REMEMBER " + wanted.source + " = 0" +
+            std::string(number.unit->spelling) + "`");
   if (number.digits.empty()) return;
   const bool minutes = wanted.unit->dimension == vm::Dimension::duration &&
                        number.unit != nullptr && number.unit->spelling == "m";

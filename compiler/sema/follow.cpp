@@ -177,10 +177,10 @@ bool Commands::lasts(const Given& given, Follow& result) {
 std::optional<Followed> Commands::follow_by(std::size_t actuator, const std::vector<Given>& given,
                                             const ast::Name& verb, Diagnostics& diagnostics) const {
   const ActuatorConfig& config = robot_.actuators[actuator];
-  if (config.to_unit == nullptr || !knows(config, vm::Param::to, false)) {
+  if (config.to_unit == nullptr || config.shows_numbers() || !knows(config, vm::Param::to, false)) {
     diagnostics.report(Code::E0512, config.name.shown() + " cannot follow")
         .label(verb.span)
-        .label(config.name.span, "it has no verb with TO", false);
+        .label(config.name.span, "it has no position to go TO", false);
     return std::nullopt;
   }
   if (config.drive) {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "compiler/ir/walk.hpp"
 #include "compiler/syntax/walk.hpp"
 #include "compiler/units/units.hpp"
@@ -292,6 +294,10 @@ public:
     add(block);
     return std::max(now_, latest());
   }
+  std::int64_t waits_of(const ir::Block& block) {
+    add(block);
+    return now_;
+  }
 
 private:
   void add(const ir::Block& block) {
@@ -341,6 +347,24 @@ void lint_cooldown(const ir::Rule& rule, Diagnostics& diagnostics) {
                                format_value(rule.cooldown, second))
       .label(rule.span)
       .helps("a COOLDOWN counts from the start of the response; make it longer than that");
+}
+
+// What the response waits for itself: commands go on in the background.
+void lint_period(const ir::Rule& rule, Diagnostics& diagnostics) {
+  const std::int64_t period = rule.condition.constant;
+  if (rule.kind != vm::RuleKind::every || rule.waiting != 0 || period <= 0 ||
+      rule.condition.operation != Operation::constant)
+    return;
+  const std::int64_t waits = Duration().waits_of(rule.then_response);
+  if (waits < period) return;
+  const Unit& second = canonical_unit(vm::Dimension::duration);
+  diagnostics
+      .report(Code::W0204, fmt::format("this is not done every {}, but every {}: its WAITs take {}",
+                                       format_value(period, second),
+                                       format_value((waits / period + 1) * period, second),
+                                       format_value(waits, second)))
+      .label(rule.span)
+      .helps("make the period longer: one that comes while the response still runs is left out");
 }
 
 // ---- W0207
@@ -407,6 +431,7 @@ void lint_rules(const LintInput& input) {
   for (const ir::Behavior& behavior : input.program.behaviors) {
     for (const ir::Rule& rule : behavior.rules) {
       lint_cooldown(rule, input.diagnostics);
+      lint_period(rule, input.diagnostics);
       lint_level(rule, input.diagnostics);
       lint_length(rule, input.names, input.diagnostics);
     }
@@ -572,32 +597,59 @@ void lint_noise(const LintInput& input) {
 }
 
 // PERFORM and FOLLOW are not verbs of their actuators, and they can also control lamps.
-bool moves_one(const ir::Command& command, const Robot& robot) {
-  if (command.verb.action != vm::Action::perform && command.verb.action != vm::Action::follow)
-    return command.verb.action == vm::Action::move;
-  return std::ranges::any_of(command.actuators, [&](std::size_t actuator) {
-    return std::ranges::any_of(robot.actuators[actuator].verbs, [](const VerbConfig& verb) {
-      return verb.action == vm::Action::move;
-    });
-  });
+bool moves_them(const ir::Command& command) {
+  const vm::Action action = command.verb.action;
+  return action != vm::Action::stop && action != vm::Action::play &&
+         (action != vm::Action::set ||
+          (command.verb.takes >> static_cast<unsigned>(vm::Param::direction) & 1U) != 0);
 }
 
-// A few rules without a BEHAVIOR are a first try and get no advice.
+// The actuators that a SAFETY rule or a LIMIT can stop.
+std::set<std::size_t> stopped_ones(const LintInput& input) {
+  std::set<std::size_t> stopped;
+  for (const auto& [actuator, speed] : input.program.speed_limits)
+    stopped.insert(actuator);
+  for (const ir::Rule& rule : input.program.safety)
+    for_each_of<ir::Halt>(rule.then_response, [&](const ir::Halt& halt) {
+      for (std::size_t i = 0; halt.all && i < input.robot.actuators.size(); ++i)
+        stopped.insert(i);
+      stopped.insert(halt.actuators.begin(), halt.actuators.end());
+    });
+  return stopped;
+}
+
+// A few rules without a BEHAVIOR are a first try and get no advice, until there is a SAFETY rule.
 void lint_safety(const LintInput& input) {
   const ir::Program& program = input.program;
-  if (!program.safety.empty() || !program.speed_limits.empty()) return;
-  const auto moves = [&](const ir::Command& command) { return moves_one(command, input.robot); };
-  for (const ir::Behavior& behavior : program.behaviors) {
-    for (const ir::Rule& rule : behavior.rules) {
-      const bool found = !behavior.name.empty() && (any_command(rule.then_response, moves) ||
-                                                    any_command(rule.else_response, moves));
-      if (!found) continue;
-      input.diagnostics.report(Code::W0209, "this robot moves, and no SAFETY rule can stop it")
-          .label(rule.span, "the first rule that moves it")
-          .helps("add a SAFETY rule, or a LIMIT on its speed");
-      return;
+  const std::set<std::size_t> stopped = stopped_ones(input);
+  std::set<std::size_t> found;
+  Span first{};
+  const auto note = [&](const ir::Rule& rule, const ir::Command& command) {
+    for (const std::size_t actuator : command.actuators) {
+      if (!moves_them(command) || !input.robot.actuators[actuator].moves() ||
+          stopped.contains(actuator))
+        continue;
+      if (found.empty()) first = rule.span;
+      found.insert(actuator);
     }
-  }
+  };
+  for (const ir::Behavior& behavior : program.behaviors)
+    for (const ir::Rule& rule : behavior.rules)
+      for_each_response(rule, [&](const ir::Block& block) {
+        if (!behavior.name.empty() || !stopped.empty())
+          for_each_of<ir::Command>(block, [&](const auto& command) { note(rule, command); });
+      });
+  if (found.empty()) return;
+  std::vector<std::string> names;
+  names.reserve(found.size());
+  for (const std::size_t actuator : found)
+    names.push_back(input.robot.actuators[actuator].name.text);
+  input.diagnostics
+      .report(Code::W0209, stopped.empty() ? "this robot moves, and no SAFETY rule can stop it"
+                                           : "no SAFETY rule can stop " + list_names(names))
+      .label(first, "the first rule that moves it")
+      .helps(stopped.empty() ? "add a SAFETY rule, or a LIMIT on its speed"
+                             : "add a STOP to a SAFETY rule, or a LIMIT on its speed");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "compiler/diagnostics/nearest.hpp"
 #include "compiler/sema/commands.hpp"
 #include "compiler/units/foreign_units.hpp"
 #include "compiler/units/units.hpp"
@@ -289,6 +290,77 @@ bool Commands::is_sensor_meant(const Recipient& to, const ast::Word& word, const
     d.helps("write `" + to.verb.name + " " + to.actuator.name.text + "`")
         .fix(word.name.span, to.actuator.name.text, Applicability::likely);
   return true;
+}
+
+// ---- a word or a text that the actuator does not take
+
+// Does a number or a value in brackets follow, as after TO, BY, AT, OVER and FOR?
+static bool may_be_preposition(const ast::Command& command, const ast::Word& word) {
+  const auto& arguments = command.arguments;
+  const auto next = std::ranges::find_if(
+      arguments, [&](const ast::Argument& one) { return one.span.begin > word.name.span.begin; });
+  const auto* const amount =
+      next == arguments.end() ? nullptr : std::get_if<ast::Amount>(&next->value);
+  return amount != nullptr && !amount->times && next->preposition == ast::Preposition::none;
+}
+
+// `SHOW lights happy`
+static bool stands_for_actuator(const ActuatorConfig& actuator, const ast::Command& command,
+                                const ast::Word& word) {
+  const auto& arguments = command.arguments;
+  const ast::Word* const next = arguments.size() > 1 ? plain_word(arguments[1]) : nullptr;
+  return next != nullptr && plain_word(arguments.front()) == &word &&
+         actuator.find_word(next->name.text) != nullptr;
+}
+
+void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
+  if (is_sensor_meant(to, word, names_)) return;
+  Diagnostic& d = to.diagnostics
+                      .report(Code::E0501, to.actuator.name.shown() + " does not know the word " +
+                                               word.name.shown())
+                      .label(word.name.span);
+  const std::size_t targets_known = robot_.actuators.size() + robot_.groups.size();
+  if (!diagnostics_.may_search(to.actuator.words.size() + targets_known)) return;
+  std::vector<std::string> words;
+  for (const WordConfig& known : to.actuator.words)
+    if (!known.text) words.push_back(known.name);
+  auto candidates = words;
+  const auto targets = names_.target_names();
+  candidates.insert(candidates.end(), targets.begin(), targets.end());
+  // Words of RSL that may come later in a line of commands.
+  for (const char* const keyword :
+       {"TO", "BY", "OVER", "AT", "FOR", "MARGIN", "TIMES", "WITH", "ELSE", "END"})
+    candidates.emplace_back(keyword);
+  // Not the word itself: it is a word of RSL, or another actuator, in the wrong place.
+  std::erase_if(candidates, [&](const auto& one) { return same_name(one, word.name.text); });
+  if (did_you_mean(d, word.name.span, word.name.text, candidates) &&
+      !may_be_preposition(to.command, word))
+    doubt_keyword(d);
+  names_.doubt_group(d, word.name.text);
+  if (d.help.empty() && stands_for_actuator(to.actuator, to.command, word)) {
+    d.message = "there is no actuator " + word.name.shown();
+    d.helps("write `" + to.verb.name + " " + to.actuator.name.text + "`")
+        .fix(word.name.span, to.actuator.name.text, Applicability::likely);
+  }
+  if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
+  if (names_.find_list(word.name.text) != nullptr)
+    d.helps("it is a LIST; choose one of its texts: `ANY " + std::string(word.name.text) + "`");
+  if (d.help.empty() && to.verb.texts == Texts::listed)
+    help_with_files(to, d);
+  else if (d.help.empty() && to.verb.texts == Texts::any)
+    d.helps("put words to say or play in quotes: `\"" + std::string(word.name.text) + "\"`");
+}
+
+// `SHOW face "happy"`, `SHOW face ANY names`
+void Commands::report_no_text(const Recipient& to, const Given& given) const {
+  Diagnostic& d = to.diagnostics.report(Code::E0505, "`" + to.verb.name + "` takes no text")
+                      .label(given.argument->span);
+  if (chosen_ != nullptr)
+    d.helps(
+        "a LIST holds texts: for one of several words, write `PICK ONE` with an `OPTION` for each");
+  else if (const WordConfig* const word = to.actuator.find_word(*given.text))
+    d.helps("write the word without quotes: `" + word->name + "`")
+        .fix(given.text_span, word->name, Applicability::likely);
 }
 
 }  // namespace robosync::compiler

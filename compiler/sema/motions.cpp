@@ -182,12 +182,12 @@ bool is_late(const vm::Key& from, const vm::Key& to, std::int64_t limit) {
 }
 
 // It speeds up from a standstill, and slows down to one, in `time` milliseconds.
-bool is_late(const vm::Key& from, const vm::Key& to, std::int64_t time,
-             const ActuatorConfig& actuator) {
+bool is_late_with_ramps(const vm::Key& from, const vm::Key& to, std::int64_t time,
+                        const ActuatorConfig& actuator) {
   if (actuator.acceleration == 0) return false;
   const std::int64_t way = std::abs(std::int64_t{to.to} - from.to);
   const std::int64_t acceleration =
-      actuator.acceleration;  // in thousandths, of the speed in a millisecond
+      actuator.acceleration;  // thousandths per second, in a millisecond
   const std::int64_t fastest =
       std::min<std::int64_t>(actuator.speed_limit, acceleration * time / 2);
   return way * vm::kScale > fastest * time - fastest * fastest / acceleration;
@@ -205,34 +205,27 @@ bool Motions::add_key(const ast::MotionKey& key, vm::Value time, ir::Track& trac
   Diagnostics& notes = track.keys.empty() ? diagnostics_ : said_before;
   if (!fit_parameter(actuator, vm::Param::to, *number, notes, diagnostics_)) return false;
   const vm::Key made{time, number->code.constant};
-  if (!track.keys.empty() && is_late(track.keys.back(), made, actuator.speed_limit))
-    report_late(actuator, "here late", key.span);
-  else if (!track.keys.empty() &&
-           is_late(track.keys.back(), made, made.time - track.keys.back().time, actuator))
-    report_slow(actuator, "here late", key.span);
+  if (!track.keys.empty()) {
+    const vm::Key& before = track.keys.back();
+    const bool late = is_late(before, made, actuator.speed_limit);
+    if (late || is_late_with_ramps(before, made, made.time - before.time, actuator))
+      report_late(actuator, "here late", !late, key.span);
+  }
   track.keys.push_back(made);
   return true;
 }
 
-// The actuator moves at its limit and arrives later than the table says.
-void Motions::report_late(const ActuatorConfig& actuator, const std::string& where, Span span) {
+// The actuator moves at its limits and arrives later than the table says. `ramps`: because of its acceleration.
+void Motions::report_late(const ActuatorConfig& actuator, const std::string& where, bool ramps,
+                          Span span) {
   const Unit& unit = param_unit(actuator, vm::Param::at);
-  diagnostics_
-      .report(Code::N0004, actuator.name.shown() + " arrives " + where +
-                               ": it goes no faster than " +
-                               format_value(actuator.speed_limit, unit))
+  const std::string why =
+      ramps ? "it stops at each row, and speeds up by no more than " +
+                  format_acceleration(actuator.acceleration, unit)
+            : "it goes no faster than " + format_value(actuator.speed_limit, unit);
+  diagnostics_.report(Code::N0004, actuator.name.shown() + " arrives " + where + ": " + why)
       .label(span)
-      .label(actuator.limit_span, "the limit", false);
-}
-
-void Motions::report_slow(const ActuatorConfig& actuator, const std::string& where, Span span) {
-  const Unit& unit = param_unit(actuator, vm::Param::at);
-  diagnostics_
-      .report(Code::N0004, actuator.name.shown() + " arrives " + where +
-                               ": it stops at each row, and speeds up by no more than " +
-                               format_acceleration(actuator.acceleration, unit))
-      .label(span)
-      .label(actuator.acceleration_span, "the limit", false);
+      .label(ramps ? actuator.acceleration_span : actuator.limit_span, "the limit", false);
 }
 
 void Motions::check_pace(std::size_t place, vm::Value pace, Span span) {
@@ -245,14 +238,15 @@ void Motions::check_pace(std::size_t place, vm::Value pace, Span span) {
       return is_late(from, to, share) && !is_late(from, to, actuator.speed_limit);
     };
     if (std::ranges::adjacent_find(track.keys, late) != track.keys.end())
-      return report_late(actuator, "late at this pace", span);
+      return report_late(actuator, "late at this pace", false, span);
     const auto slow = [&](const vm::Key& from, const vm::Key& to) {
       const std::int64_t time = to.time - from.time;
-      return is_late(from, to, time * kAsWritten / pace, actuator) &&
-             !is_late(from, to, time, actuator) && !is_late(from, to, actuator.speed_limit);
+      return is_late_with_ramps(from, to, time * kAsWritten / pace, actuator) &&
+             !is_late_with_ramps(from, to, time, actuator) &&
+             !is_late(from, to, actuator.speed_limit);
     };
     if (std::ranges::adjacent_find(track.keys, slow) != track.keys.end())
-      return report_slow(actuator, "late at this pace", span);
+      return report_late(actuator, "late at this pace", true, span);
   }
 }
 

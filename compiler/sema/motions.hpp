@@ -44,8 +44,7 @@ private:
   bool add_row(const ast::Motion& motion, const ast::MotionRow& row,
                const std::vector<std::vector<std::size_t>>& columns, ir::Motion& result);
   bool add_key(const ast::MotionKey& key, vm::Value time, ir::Track& track);
-  void report_slow(const ActuatorConfig& actuator, const std::string& where, Span span);
-  void report_late(const ActuatorConfig& actuator, const std::string& where, Span span);
+  void report_late(const ActuatorConfig& actuator, const std::string& where, bool ramps, Span span);
 
   const Robot& robot_;
   Names& names_;

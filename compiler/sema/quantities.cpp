@@ -1,5 +1,7 @@
 #include "compiler/sema/quantities.hpp"
 
+#include <fmt/format.h>
+
 namespace robosync::compiler {
 namespace {
 
@@ -146,6 +148,25 @@ Diagnostic& report_mismatch(const Typed& left, const Typed& right, std::string_v
   label_side(d, left_first ? left : right, true);
   label_side(d, left_first ? right : left, false);
   return d;
+}
+
+void help_with_unit(Diagnostic& diagnostic, const Typed& number, const Unit& wanted) {
+  const bool from_number = number.dimension() == vm::Dimension::number;
+  const bool to_number = wanted.dimension == vm::Dimension::number;
+  if (!number.digits.empty() || number.unit == nullptr || from_number == to_number) return;
+  const bool is_source = number.source.size() == number.span.end - number.span.begin;
+  const std::string value = is_source ? number.source : "(…)";
+  if (from_number)
+    diagnostic.helps(fmt::format("multiplied by a unit, a number becomes {}: `{} * 1{}`",
+                                 dimension_phrase(wanted.dimension), value, wanted.spelling));
+  else if (number.dimension() == vm::Dimension::duration)
+    diagnostic.helps(
+        fmt::format("divided by a unit, it becomes a number: `{0} / 1s` counts "
+                    "seconds, and `{0} / 100ms` tenths of them",
+                    value));
+  else
+    diagnostic.helps(fmt::format("divided by a unit, it becomes a number: `{} / 1{}`", value,
+                                 number.unit->spelling));
 }
 
 void make_difference(Typed& number) {

@@ -57,7 +57,11 @@ struct Wanted {
   std::string source;       // what requires it: "touch LEVEL", "TO of left_arm"
   Span unit_span;           // where the unit is written
   bool difference = false;  // added or subtracted, not compared: offsets of units do not apply
+  bool remembered = false;  // its unit is that of the value it starts with
 };
+
+// How a plain number becomes one with a unit, or the other way round. Nothing for a literal, which just takes another unit.
+void help_with_unit(Diagnostic& diagnostic, const Typed& number, const Unit& wanted);
 
 // Gives a bare constant the wanted unit, with a note if it is a real unit (N0002).
 void take_unit(Typed& number, const Wanted& wanted, Diagnostics& diagnostics);

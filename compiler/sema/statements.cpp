@@ -448,7 +448,8 @@ void Statements::add(const ast::Set& node, Span span, ir::Block& result) {
   if (variable == nullptr || node.value == nullptr || !variable->ready) return;
   if (variable->kind == vm::VariableKind::state) return set_label(node, *variable, span, result);
   Typed value = expressions_.amount(
-      *node.value, {variable->unit, std::string(node.name.text), variable->unit_span});
+      *node.value, {variable->unit, std::string(node.name.text), variable->unit_span, false,
+                    variable->kind == vm::VariableKind::plain});
   if (!value.is_number() || !in_range(*variable, value)) return;
   put(ir::Set{variable->index, std::move(value.code), false}, span, result);
 }

@@ -21,6 +21,8 @@ constexpr ForeignVerb kForeignVerbs[] = {
     {"SLEEP", "WAIT", "WAIT makes a pause"},
     {"DELAY", "WAIT", "WAIT makes a pause"},
     {"PAUSE", "WAIT", "WAIT makes a pause"},
+    {"FADE", "", "OVER makes a change slow: `LIGHT lamp red OVER 1s`"},
+    {"FLASH", "BLINK", "BLINK turns a light on and off"},
     {"ADD", "", "RAISE increases a variable: `RAISE visits BY 1`"},
     {"INCREASE", "RAISE", "RAISE increases a variable: `RAISE visits BY 1`"},
     {"INCREMENT", "RAISE", "RAISE increases a variable: `RAISE visits BY 1`"},

@@ -58,6 +58,10 @@ bool Commands::says_twice(const Recipient& to, const std::vector<Given>& given,
   if (is_given(result, vm::Param::to) && is_given(result, vm::Param::at) && gets_power(to.actuator))
     return report("the power is given twice", vm::Param::at,
                   "`TO` sets it, and so do `AT` and words such as SLOWLY: remove one of them");
+  if (to.actuator.shows_numbers() && is_given(result, vm::Param::to) &&
+      is_given(result, vm::Param::item))
+    return report("the picture is given twice", vm::Param::item,
+                  "a word gives a picture, and so does a number: remove one of them");
   if (to.verb.action != vm::Action::move) return false;
   if (is_given(result, vm::Param::at) && is_given(result, vm::Param::over))
     return report("the speed is given twice", vm::Param::over,
@@ -156,6 +160,37 @@ bool Commands::gives_too_much(const ast::Command& node, const ir::Command& comma
   return false;
 }
 
+// ---- a number alone
+
+// A number without a preposition.
+bool Commands::is_number_alone(const Given& given) {
+  return given.is_number && given.param == vm::Param::by &&
+         given.argument->preposition == ast::Preposition::none;
+}
+
+// `SAY visitors`: a number alone, where a text is possible and BY has no meaning.
+bool Commands::is_to_be_said(const VerbConfig& verb, const Given& given) {
+  return is_number_alone(given) && verb.texts == Texts::any && !verb.has(vm::Param::by);
+}
+
+// `SHOW face score`.
+bool Commands::is_to_be_shown(const Recipient& to, const Given& given) {
+  return is_number_alone(given) && to.actuator.shows_numbers() && to.verb.has(vm::Param::to);
+}
+
+// `SHOW face heart`, where `heart` is also a variable.
+void Commands::warn_of_hidden(const Recipient& to, const ast::Word& word) const {
+  const VariableName* const variable = names_.find_variable(word.name.text);
+  if (!to.actuator.shows_numbers() || !to.verb.has(vm::Param::to) || !names_a_number(word.name) ||
+      (variable != nullptr && !variable->labels.empty()))
+    return;
+  const std::string better = "TO " + std::string(word.name.text);
+  to.diagnostics.report(Code::W0224, "this shows a picture, not the number with the same name")
+      .label(word.name.span)
+      .helps("for the number, write `" + better + "`; to make it clear, rename one of the two")
+      .fix(word.name.span, better, Applicability::likely);
+}
+
 // ---- nothing to say
 
 namespace {
@@ -190,11 +225,13 @@ void Commands::help_with_files(const Recipient& to, Diagnostic& d) {
 
 // Checks only verbs that take nothing else: BLINK needs no colour, and a tone has AT.
 bool Commands::lacks_content(const ir::Command& command, Span span) {
-  if (command.word || is_given(command, vm::Param::item) || command.actuators.empty()) return false;
+  if (command.word || is_given(command, vm::Param::item) || is_given(command, vm::Param::to) ||
+      command.actuators.empty())
+    return false;
   const ActuatorConfig& actuator = robot_.actuators[command.actuators.front()];
   const VerbConfig* const verb = actuator.find_verb(command.verb.name);
   if (verb == nullptr || !verb->has(vm::Param::item) ||
-      (verb->takes & ~(bit(vm::Param::item) | bit(vm::Param::for_))) != 0)
+      (verb->takes & ~(bit(vm::Param::item) | bit(vm::Param::to) | bit(vm::Param::for_))) != 0)
     return false;
   const std::vector<std::string> contents = contents_of(actuator, *verb);
   if (contents.empty()) return false;

@@ -1,5 +1,7 @@
 // Habits from other languages. The lexer reports those that it can detect on its own (`&&`, braces, comments); see
 // habits.hpp.
+#include <fmt/format.h>
+
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
@@ -18,7 +20,8 @@ public:
     using Habit = std::optional<Edit> (ForeignHabits::*)();
     for (const Habit habit :
          {&ForeignHabits::name_of_test, &ForeignHabits::rule_with_if, &ForeignHabits::foreign_else,
-          &ForeignHabits::head, &ForeignHabits::comparison, &ForeignHabits::declaration,
+          &ForeignHabits::head, &ForeignHabits::again_outside, &ForeignHabits::set_outside,
+          &ForeignHabits::comparison, &ForeignHabits::declaration,
           &ForeignHabits::declared_in_block, &ForeignHabits::definition,
           &ForeignHabits::text_in_brackets, &ForeignHabits::set_with_sign,
           &ForeignHabits::assignment, &ForeignHabits::colon, &ForeignHabits::end_of_what,
@@ -44,12 +47,13 @@ private:
     return change(0, end, {{Kinds::TEST, tokens_[0].span}, {Kinds::STRING, name}});
   }
 
-  // `IF touch LEVEL > 3 DO` outside of a rule; `ON touch LEVEL > 3 DO`
+  // `IF touch LEVEL > 3 DO` outside of a rule; `ON touch LEVEL > 3 DO`, `WENN touch LEVEL > 3:`
   std::optional<Edit> rule_with_if() {
     const auto block = open_block();
     const bool outside = stop_ == begin_ && (!block || is(*block, Kinds::BEHAVIOR));
-    const bool foreign = is_any_name(stop_, {"ON", "WHENEVER", "UPON", "ONCE"}) &&
-                         (has(stop_, end_, Kinds::DO) || is(end_ + 1, Kinds::DO));
+    const bool foreign =
+        is_any_name(stop_, {"ON", "WHENEVER", "UPON", "ONCE", "WENN", "SOBALD"}) &&
+        (has(stop_, end_, Kinds::DO) || is(end_ + 1, Kinds::DO) || is(end_ - 1, Kinds::COLON));
     if (!outside || is(stop_ + 1, Kinds::START) || !(is(stop_, Kinds::IF) || foreign))
       return std::nullopt;
     report(Code::E0010,
@@ -89,6 +93,39 @@ private:
         .helps("write `USE " + std::string(text(stop_ + 1)) + "`")
         .fix(here, "USE", Applicability::likely);
     return change(stop_, 2);
+  }
+
+  // `FOREVER`, `LOOP:`, `ALWAYS DO`, outside of a rule
+  std::optional<Edit> again_outside() {
+    const auto block = open_block();
+    if (stop_ != begin_ || (block && !is(*block, Kinds::BEHAVIOR))) return std::nullopt;
+    const bool forever = ascii::same(text(stop_), "FOREVER");
+    if (!forever && !is_any_name(stop_, {"LOOP", "ALWAYS"})) return std::nullopt;
+    std::size_t behind = stop_ + 1;
+    if (is(behind, Kinds::COLON)) ++behind;
+    if (!is(behind, Kinds::NEWLINE) && !is(behind, Kinds::DO)) return std::nullopt;
+    const std::size_t next = after_line_ends(behind);
+    if (is(next, Kinds::DO)) behind = next + 1;
+    const Span all = span(stop_, behind);
+    report(Code::E0010, "a rule cannot begin with " + quote(stop_), all)
+        .helps("to act again and again, write `EVERY 1s DO`")
+        .fix(all, "EVERY 1s DO", Applicability::likely);
+    return change(
+        stop_, behind - stop_,
+        {{Kinds::EVERY, all}, missing(Kinds::QUANTITY, behind), missing(Kinds::DO, behind)});
+  }
+
+  // `SET score TO 0`, outside of a rule
+  std::optional<Edit> set_outside() {
+    const std::size_t name = stop_ + 1, to = stop_ + 2;
+    if (stop_ != begin_ || open_block() || !is(stop_, Kinds::SET) || !is(name, Kinds::NAME) ||
+        !(is(to, Kinds::TO) || is(to, Kinds::EQUAL)) || to + 1 >= end_)
+      return std::nullopt;
+    const std::string better = fmt::format("REMEMBER {} = {}", text(name), text(to + 1, end_));
+    report(Code::E0010, quote(stop_) + " changes a variable inside a rule", tokens_[stop_].span)
+        .helps("the value at the start is written `" + better + "`")
+        .fix(span(stop_, end_), better, Applicability::likely);
+    return change(stop_, end_ - stop_);
   }
 
   // `touch LEVEL EQUALS 3`, `IS AT LEAST 3`, `red_button WAS pressed`
@@ -354,9 +391,10 @@ private:
       report(Code::E0009, "a line of RSL does not end with a colon", here).fix(here, "");
       return change(stop_, 1);
     }
-    report(Code::E0001, "this line ends with `DO`, not with a colon", here)
-        .helps("write `" + text(begin_, stop_) + " DO`")
-        .fix(here, " DO");
+    Diagnostic& d = report(Code::E0001, "this line ends with `DO`, not with a colon", here);
+    d.fix(here, " DO");
+    if (!is(begin_, Kinds::WHEN) || ascii::same(text(begin_), "WHEN"))
+      d.helps("write `" + text(begin_, stop_) + " DO`");
     return change(stop_, 1, {{Kinds::DO, here}});
   }
 

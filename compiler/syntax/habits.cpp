@@ -509,7 +509,7 @@ private:
   // `SAY COUNT OF jokes`, `SAY MIN(3cm, 4s)`, `MOVE left_arm TO touch LEVEL * 10deg`
   std::optional<Edit> worked_out() {
     const std::size_t last = statement_end();
-    const bool whole = is(before_, Kinds::CLOSE) && is_name(statement_, "SAY");
+    const bool whole = is(before_, Kinds::CLOSE) && (is_name(statement_, "SAY") || last_call(last));
     const bool command = begins_with(Kinds::NAME) && stop_ > statement_ &&
                          (stop_ < last || (whole && stop_ == last));
     const bool test = is(begin_, Kinds::AT) || is(begin_, Kinds::EXPECT);
@@ -519,9 +519,7 @@ private:
     while (first > statement_ + 1 && !is_preposition(tokens_[first - 1].kind))
       --first;
     const bool behind_preposition = is_preposition(tokens_[first - 1].kind);
-    if (!behind_preposition)
-      for (std::size_t open = first + 2; open <= stop_; ++open)
-        if (is_call(open)) first = open - 1;
+    if (!behind_preposition) first = std::max(first, last_call(stop_ + 2));
     const std::size_t end = number_end(first, statement_end());
     const bool gets_on = end > stop_ || stop_ >= last;
     if (!gets_on || !worked_out_at(first) || !is_balanced(first, end)) return std::nullopt;
@@ -535,11 +533,22 @@ private:
              span(first, end))
           .helps("write the words, a comma and the number: `SAY \"…\", " + number + "`");
     } else {
-      report(Code::E0008, "this does not say what the number is for", span(first, end))
-          .helps("put it in brackets after TO, BY, AT, OVER or FOR, such as `TO " + brackets + "`");
+      Diagnostic& d =
+          report(Code::E0008, "this does not say what the number is for", span(first, end));
+      d.helps("put it in brackets after TO, BY, AT, OVER or FOR, such as `TO " + brackets + "`");
+      if (is_name(statement_, "SHOW"))
+        d.fix(span(first, end), "TO " + brackets, Applicability::likely);
     }
     return change(first, end - first,
                   behind_preposition ? Tokens{missing(Kinds::QUANTITY, first)} : Tokens{});
+  }
+
+  // The function that is called last before `end`, such as `ROUND(` behind the actuator; 0: none.
+  std::size_t last_call(std::size_t end) const {
+    std::size_t call = 0;
+    for (std::size_t open = statement_ + 3; open < end; ++open)
+      if (is_call(open) || (is(open, Kinds::OPEN) && is(open - 1, Kinds::RANDOM))) call = open - 1;
+    return call;
   }
 
   // A preposition after the number belongs to the command again.

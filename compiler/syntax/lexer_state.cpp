@@ -363,6 +363,8 @@ void LexerState::strange(std::size_t size) {
                                                 utf8::describe(utf8::decode(text_, start_).value))
                             .label(here());
   if (text_[start_] == '^') message.helps("RSL has no powers: multiply, such as `n * n`");
+  if (text_[start_] == '\\')
+    message.helps("for quotation marks inside a text, put it in '…': `'say \"hi\" now'`");
   if (text_[start_] == '[' || text_[start_] == ']')
     message.helps(
         "a LIST has no brackets: `LIST words: \"one\", \"two\"`; one item is `ITEM 1 OF words`");

@@ -419,9 +419,8 @@ private:
       return std::nullopt;
     report(Code::E0001, "`" + text(stop_ - 1, stop_ + 1) + "` is two words, but a variable is one",
            span(stop_ - 1, stop_ + 1))
-        .helps(
-            "a sensor's value cannot be changed: `SET`, `RAISE` and `LOWER` change a REMEMBER, a "
-            "FEELING or a STATE");
+        .helps("write a variable as one word, with `_`; a sensor's value cannot be changed")
+        .helps("`SET`, `RAISE` and `LOWER` change a REMEMBER, a FEELING or a STATE");
     return change(stop_, 1);
   }
 

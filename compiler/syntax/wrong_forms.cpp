@@ -228,9 +228,27 @@ private:
   }
   bool is_below(std::size_t at) const { return is(at, Kinds::LESS) || is(at, Kinds::LESS_EQUAL); }
 
+  // `WHEN touch LEVEL > 3 AND WITHIN 2s wave_detect`
+  std::optional<Edit> within_first() {
+    const std::size_t what = stop_ + 2;
+    std::size_t end = what;
+    while (end < end_ && !is_one_of(tokens_[end].kind, {Kinds::AND, Kinds::OR, Kinds::DO}))
+      ++end;
+    if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY) || end == what ||
+        !is(stop_ - 1, Kinds::AND))
+      return std::nullopt;
+    const Span all = span(stop_ - 1, end);
+    const std::string better = fmt::format("THEN {} {}", text(what, end), text(stop_, what));
+    say(Code::E0001, span(stop_, what), "`WITHIN` and its time end a condition",
+        "if the second comes after the first, write `… {0}`", better)
+        .fix(all, better, Applicability::likely);
+    return change(stop_ - 1, end - stop_ + 1);
+  }
+
   // `WHEN touch LEVEL > 3 WITHIN 3s`
   std::optional<Edit> within_alone() {
     if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
+    if (is(stop_ - 1, Kinds::AND)) return within_first();
     std::size_t first = stop_;
     while (first > 0 && !begins_question(tokens_[first - 1].kind))
       if (is_one_of(tokens_[--first].kind,

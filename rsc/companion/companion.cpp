@@ -74,8 +74,7 @@ std::string find_companion_program(const std::string& module, const std::string&
   return {};
 }
 
-std::vector<compiler::SensorConfig> companion_algorithms(const std::string& config,
-                                                         bool reads_words) {
+std::vector<compiler::SensorConfig> algorithms_in(const std::string& config, bool reads_words) {
   compiler::SourceMap sources;
   compiler::Diagnostics diagnostics;
   const compiler::FileId file = sources.add(config, read_text(config));
@@ -86,7 +85,8 @@ std::vector<compiler::SensorConfig> companion_algorithms(const std::string& conf
     std::cerr << compiler::render_human(diagnostics, sources, color_on_stderr());
     throw Failure(Exit::program, "");
   }
-  std::erase_if(robot->sensors, [](const auto& sensor) { return !sensor.companion; });
+  std::erase_if(robot->sensors,
+                [](const auto& sensor) { return !sensor.companion && !sensor.algorithm; });
   return std::move(robot->sensors);
 }
 
@@ -145,7 +145,8 @@ Worker::Plan Companion::plan_of(const Hearer& hearer) const {
   for (std::size_t i = 0; i < module.parameters.size(); ++i)
     arguments.insert(arguments.end(),
                      {"--" + module.parameters[i].name, decimal(config.config[i])});
-  if (!config.words_file.empty()) arguments.insert(arguments.end(), {"--words", config.words_file});
+  if (const std::string& words = hearer.algorithm.words_file; !words.empty())
+    arguments.insert(arguments.end(), {"--words", words});
   if (sees && !sources_.preview.empty())
     arguments.insert(arguments.end(), {"--preview", sources_.preview});
   for (const Output& output : hearer.outputs) {

@@ -24,10 +24,10 @@ struct CompanionSources {
 [[nodiscard]] std::string find_companion_program(const std::string& module,
                                                  const std::string& folder);
 
-// The algorithms of a robot.json that run on a companion computer. Errors in it go to stderr, then Failure (program) is thrown.
-// `reads_words`: read the files of taught words, which must be there.
-[[nodiscard]] std::vector<compiler::SensorConfig> companion_algorithms(const std::string& config,
-                                                                       bool reads_words);
+// The algorithms of a robot.json. Errors in it go to stderr, then Failure (program) is thrown. `reads_words`: read the files of
+// taught words, which must be there.
+[[nodiscard]] std::vector<compiler::SensorConfig> algorithms_in(const std::string& config,
+                                                                bool reads_words);
 
 class Companion final : public Viewer {
 public:

@@ -12,6 +12,7 @@
 
 #include "rsc/device/host_name.hpp"
 #include "rsc/failure.hpp"
+#include "vm/identity.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -98,6 +99,10 @@ std::optional<Message> Client::next_unasked(milliseconds timeout) {
   const auto until = transport_.now() + timeout;
   while (unasked_.empty() && receive(until)) {
   }
+  return pop(unasked_);
+}
+
+std::optional<Message> Client::pending_unasked() {
   return pop(unasked_);
 }
 
@@ -430,7 +435,7 @@ std::vector<link::ThreadInfo> Client::threads() {
   no_answer();
 }
 
-std::vector<std::byte> Client::running_image() {
+std::vector<std::byte> Client::running_image(const Known& known) {
   auto give_up = transport_.now() + timeout_;
   std::vector<std::byte> image;
   while (transport_.now() < give_up && image.size() <= kMostImage) {
@@ -444,6 +449,9 @@ std::vector<std::byte> Client::running_image() {
     }
     const auto bytes = std::span(answer->payload).subspan(sizeof head);
     if (bytes.empty()) return image;
+    if (known && image.empty())
+      if (std::vector<std::byte> whole = known(vm::stated_name(bytes)); !whole.empty())
+        return whole;
     image.insert(image.end(), bytes.begin(), bytes.end());
     give_up = transport_.now() + timeout_;
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -54,7 +55,10 @@ public:
   link::FeedResult feed(link::Feed feed);
   link::ActivateResult activate(link::Activate what);
   std::vector<link::ThreadInfo> threads();
-  std::vector<std::byte> running_image();  // empty: no program is running
+  // Empty: no program is running. `known` may give the image with a name, which is then not read from the board: it returns nothing
+  // for a name that it does not know.
+  using Known = std::function<std::vector<std::byte>(const link::ProgramHash&)>;
+  std::vector<std::byte> running_image(const Known& known = {});
 
   // Orders to a robot with an owner are signed with this key, or with default_key_file() if `file` is empty.
   void use_key(const std::string& file) { orders_.use_key(file); }
@@ -83,6 +87,8 @@ public:
   void reopen(const Message& busy, bool& tried);
   // The next event, log line or fault record.
   std::optional<Message> next_unasked(Milliseconds timeout);
+  // … if one has arrived already; reads nothing from the line.
+  std::optional<Message> pending_unasked();
 
   Transport::Clock::time_point now() const { return transport_.now(); }
   // How long no valid frame has come, counted from `start` at the earliest.

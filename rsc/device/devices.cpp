@@ -35,14 +35,16 @@ std::vector<OnBus> on_buses(const vm::Image& image, const link::Devices& said) {
   found.reserve(image.sensors.size());
   for (std::size_t s = 0; s < image.sensors.size(); ++s) {
     const vm::Sensor& sensor = image.sensors[s];
-    if (policy::is_fed(sensor) || !vm::is_on_i2c(sensor.driver)) continue;
+    const bool spi = vm::is_on_spi(sensor.driver);
+    if (policy::is_fed(sensor) || !(spi || vm::is_on_i2c(sensor.driver))) continue;
     found.push_back({.name = name_of(image, s),
                      .driver = driver_name(sensor.driver),
                      .bus = sensor.bus,
                      .address = sensor.address,
+                     .spi = spi,
                      .asked = has(said.asked, s),
                      .silent = has(said.silent, s),
-                     .held = has(said.held, sensor.bus),
+                     .held = !spi && has(said.held, sensor.bus),
                      .failed = s < said.failed.size() ? said.failed.at(s) : 0U});
   }
   return found;
@@ -58,9 +60,9 @@ std::vector<OnBus> silent_after_start(Client& client, const vm::Image& image) {
 }
 
 std::string found_text(const OnBus& device) {
-  std::string text =
-      name_on_bus(fmt::format("{} ({})", device.name, device.driver), device.address, device.bus);
-  text += device.asked ? " answers" : " has not been asked yet";
+  std::string text = name_on_bus(fmt::format("{} ({})", device.name, device.driver), device.address,
+                                 device.bus, device.spi);
+  text += !device.asked ? " has not been asked yet" : device.spi ? " is read" : " answers";
   if (device.failed != 0)
     text += fmt::format("; {} transfer{} failed", device.failed, device.failed == 1 ? "" : "s");
   return text;
@@ -70,10 +72,12 @@ std::string silent_text(const OnBus& device) {
   const char* const look =
       device.held ? "a line of that bus is held low: do two wires touch, and does every device on "
                     "it have power?"
-                  : "does it have power, are both wires of the bus connected, is this its address?";
+      : device.spi
+          ? "does it have power, are the wires of the bus and its select pin connected?"
+          : "does it have power, are both wires of the bus connected, is this its address?";
   return fmt::format("{} does not answer ({} transfer{} failed): {}",
-                     name_on_bus(device.name, device.address, device.bus), device.failed,
-                     device.failed == 1 ? "" : "s", look);
+                     name_on_bus(device.name, device.address, device.bus, device.spi),
+                     device.failed, device.failed == 1 ? "" : "s", look);
 }
 
 nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices) {
@@ -82,7 +86,9 @@ nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices) {
     list.push_back({{"sensor", device.name},
                     {"driver", device.driver},
                     {"bus", device.bus},
-                    {"address", fmt::format("0x{:02x}", device.address)},
+                    {device.spi ? "pin" : "address",
+                     device.spi ? nlohmann::ordered_json(device.address)
+                                : nlohmann::ordered_json(fmt::format("0x{:02x}", device.address))},
                     {"answers", device.asked ? nlohmann::ordered_json(!device.silent) : nullptr},
                     {"bus_held", device.held},
                     {"failed", device.failed}});

@@ -307,7 +307,7 @@ UploadResult explained(const Course& course, const link::ProgramHash& hash, cons
 void check_driver(const link::HelloReply& board, vm::DriverId id, std::string_view what,
                   std::string_view name, std::vector<std::string>& found) {
   const auto driver = static_cast<unsigned>(id);
-  if (driver < 32 && (board.drivers >> driver & 1) != 0) return;
+  if (driver < 64 && (link::drivers_of(board) >> driver & 1) != 0) return;
   found.push_back(fmt::format("the firmware does not have the driver `{}`, which {} {} needs",
                               driver_name(id), what, name));
 }

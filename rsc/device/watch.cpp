@@ -18,8 +18,9 @@ namespace {
 using link::MessageType;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{1000};  // for checks of losses and threads
-constexpr milliseconds kListen{50};  // before the viewers have their turn
+constexpr milliseconds kLook{1000};       // for checks of losses and threads
+constexpr milliseconds kListen{50};       // before the viewers have their turn
+constexpr std::size_t kMostAtOnce = 100;  // messages, before the caller of listen() has its turn
 constexpr milliseconds kTryAgain{500};
 constexpr milliseconds kTolerance{3000};  // of a board's clock against this computer's
 
@@ -51,7 +52,10 @@ void Watch::begin() {
 }
 
 void Watch::learn_program() {
-  image_bytes_ = session_->client.running_image();
+  image_bytes_ = session_->client.running_image([this](const link::ProgramHash& hash) {
+    const Program* const program = uploaded(hash);
+    return program == nullptr ? std::vector<std::byte>() : without_source_lines(*program);
+  });
   const bool good = vm::verify(image_bytes_, vm::Limits{}, image_).ok();
   names_ = {good ? &image_ : nullptr, {}, nullptr};
   if (good) learn_source();
@@ -63,9 +67,14 @@ void Watch::learn_program() {
 // The board does not know units; the viewer that uploaded the program may know its
 // configuration.
 void Watch::learn_source() {
+  if (const Program* const program = uploaded(image_.header->program_hash))
+    names_.origin = &program->origin();
+}
+
+const Program* Watch::uploaded(const link::ProgramHash& hash) const {
   for (const Viewer* const viewer : viewers_)
-    if (const Program* const program = viewer->uploaded(image_.header->program_hash))
-      names_.origin = &program->origin();
+    if (const Program* const program = viewer->uploaded(hash)) return program;
+  return nullptr;
 }
 
 void Watch::learn_threads() {
@@ -109,15 +118,10 @@ void Watch::show(std::optional<milliseconds> duration) {
 bool Watch::step() {
   try {
     if (session_->transport->wanted() && !lend()) return false;
-    const auto now = Clock::now();
-    if (now >= next_look_) {
-      look(session_->client.set_trace(true));
-      if (threads_) tell_threads();
-      next_look_ = now + kLook;
-    }
+    look_if_due();
     auto wait = kListen;
     if (until_) {
-      const auto left = std::chrono::ceil<milliseconds>(*until_ - now);
+      const auto left = std::chrono::ceil<milliseconds>(*until_ - Clock::now());
       wait = std::clamp(left, milliseconds(0), wait);
     }
     if (const auto message = session_->client.next_unasked(wait)) tell(*message);
@@ -126,6 +130,35 @@ bool Watch::step() {
     lose(failure.what());
   }
   return true;
+}
+
+void Watch::look_if_due() {
+  const auto now = Clock::now();
+  if (now < next_look_) return;
+  look(session_->client.set_trace(true));
+  if (threads_) tell_threads();
+  next_look_ = now + kLook;
+}
+
+bool Watch::listen(milliseconds wait) {
+  look_if_due();
+  for (std::size_t i = 0; i < kMostAtOnce; ++i) {
+    const auto message = session_->client.next_unasked(i == 0 ? wait : milliseconds(0));
+    if (!message) break;
+    tell(*message);
+  }
+  return goes_on();
+}
+
+void Watch::tell_the_rest() {
+  if (!session_) return;
+  try {
+    while (const auto message = session_->client.pending_unasked())
+      tell(*message);
+  } catch (const Failure&) {
+    // What a number means is asked over the same line.
+  }
+  (void)goes_on();
 }
 
 // Closes the port, so that a cable can be plugged in again.

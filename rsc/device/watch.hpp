@@ -32,6 +32,12 @@ public:
   // done. Meanwhile it lends the line to another rsc that wants it, and looks for a
   // lost line. Throws Failure (outside) if the line is still lost at the end.
   void show(std::optional<std::chrono::milliseconds> duration);
+  // For a caller with requests of its own in between: tells the viewers what has come, and what comes within `wait`.
+  // Meanwhile the line is neither lent nor looked for. False: the user interrupts, or a viewer is done. Throws Failure
+  // (outside) if the line is lost.
+  [[nodiscard]] bool listen(std::chrono::milliseconds wait);
+  // Tells the viewers what has come already, also from a line that is lost.
+  void tell_the_rest();
 
 private:
   using Clock = Transport::Clock;
@@ -39,9 +45,11 @@ private:
   void begin();
   void learn_program();
   void learn_source();
+  [[nodiscard]] const Program* uploaded(const link::ProgramHash& hash) const;
   void learn_threads();
   bool goes_on();
   bool step();
+  void look_if_due();
   void tell(const Message& message);
   void tell_event(const Message& message);
   void tell_current();

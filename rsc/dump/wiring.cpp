@@ -62,10 +62,15 @@ std::string algorithm_text(const vm::Image& image, const vm::Sensor& sensor) {
 
 std::string place_of(const vm::Sensor& sensor) {
   if (vm::is_analog(sensor.driver)) return fmt::format("analog pin {}", sensor.address);
-  if (vm::is_microphone(sensor.driver)) return "the board";
+  if (vm::is_of_board(sensor.driver)) return "the board";
+  if (vm::counts_edges(sensor.driver))
+    return fmt::format("pin {}", sensor.address) +
+           (vm::has_second_input(sensor) ? fmt::format(" and {}", sensor.bus) : "");
   if (vm::is_servo_chip(sensor.driver))
     return fmt::format("bus {} address 0x{:x}, enable pin {}", sensor.bus, sensor.address,
                        sensor.first_input);
+  if (vm::is_on_spi(sensor.driver))
+    return fmt::format("spi bus {} select pin {}", sensor.bus, sensor.address);
   return vm::is_by_echo(sensor.driver)
              ? fmt::format("trigger {} and echo {}", sensor.bus, sensor.address)
              : fmt::format("bus {} address 0x{:x}", sensor.bus, sensor.address);
@@ -130,9 +135,16 @@ std::string limit_of(const vm::Actuator& actuator) {
          (actuator.speed_limit == vm::kValueMax ? "none" : number(actuator.speed_limit));
 }
 
-std::string acceleration_text(const vm::Image& image, std::size_t actuator) {
-  const std::uint16_t most = image.acceleration_of(actuator);
-  return most == 0 ? std::string() : fmt::format(", acceleration limit {}", most);
+std::string traits_text(const vm::Image& image, std::size_t actuator) {
+  std::string text;
+  if (const std::uint16_t most = image.acceleration_of(actuator); most != 0)
+    text = fmt::format(", acceleration limit {}", most);
+  if (vm::is_servo(image.actuators[actuator].driver)) {
+    const vm::ServoPulses pulses = vm::pulses_of(image.traits, actuator);
+    if (pulses != vm::kServoPulses)
+      text += fmt::format(", pulses {} … {} us", pulses.at_min, pulses.at_max);
+  }
+  return text;
 }
 
 std::string actuators(const vm::Image& image) {
@@ -142,7 +154,7 @@ std::string actuators(const vm::Image& image) {
     text += fmt::format("  {} {}: {} on {}, range {} … {}, {}, release {}, safe {}; {}\n", i,
                         image.string(actuator.name), driver_name(actuator.driver),
                         place_of(image, actuator), number(actuator.min), number(actuator.max),
-                        limit_of(actuator) + acceleration_text(image, i),
+                        limit_of(actuator) + traits_text(image, i),
                         word_of(kReleases, actuator.on_release), word_of(kReleases, actuator.safe),
                         verb_names(image, actuator.verbs));
   }

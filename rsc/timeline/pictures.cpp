@@ -1,33 +1,37 @@
 // See pictures.hpp.
 #include "rsc/timeline/pictures.hpp"
 
+#include <string>
+
 #include "vm/drivers.hpp"
 
 namespace robosync::tool {
-namespace {
 
-constexpr Picture kPictures[] = {
-#define PICTURE(name, a, b, c, d, e) {a, b, c, d, e},
-#include "runtime-m4/drivers/pictures.def"
-#undef PICTURE
-};
-
-}  // namespace
-
-std::span<const Picture> pictures() {
-  return kPictures;
+nlohmann::ordered_json rows_of(drivers::Picture lights) {
+  nlohmann::ordered_json rows;
+  for (unsigned row = 0; row < vm::kPictureSide; ++row) {
+    std::string signs;
+    for (unsigned column = 0; column < vm::kPictureSide; ++column, lights >>= 1)
+      signs += (lights & 1) != 0 ? '#' : '.';
+    rows.push_back(signs);
+  }
+  return rows;
 }
 
 bool shows_pictures(const vm::Actuator& actuator) {
   return vm::drives_lights(actuator.driver) || vm::drives_screen(actuator.driver) ||
-         vm::drives_panel(actuator.driver);
+         vm::shows_pictures_on_a_panel(actuator.driver);
 }
 
-std::optional<std::size_t> picture_of(const EventReader& command) {
-  const vm::WordEntry* const word = command.word();
-  if (word == nullptr || word->param != vm::Param::item || word->value < 0) return std::nullopt;
-  const auto index = static_cast<std::size_t>(word->value / vm::kScale);
-  return index < pictures().size() ? std::optional(index) : std::nullopt;
+std::optional<drivers::Picture> picture_of(const EventReader& command) {
+  std::optional<drivers::Picture> lights;
+  if (const vm::WordEntry* const word = command.word();
+      word != nullptr && word->param == vm::Param::item)
+    lights = drivers::named_picture(word->value);
+  command.for_each_param([&](std::size_t param, vm::Value value) {
+    if (static_cast<vm::Param>(param) == vm::Param::to) lights = drivers::number_picture(value);
+  });
+  return lights;
 }
 
 }  // namespace robosync::tool

@@ -1,6 +1,7 @@
 // See recorder.hpp.
 #include "rsc/timeline/recorder.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -47,7 +48,8 @@ Json labels_of(const vm::Image& image, std::size_t first, std::size_t count) {
   return labels;
 }
 
-// A position, a power or a picture stays when its command is done, except with FOR. Power 0 is nothing. A drive ends its own.
+// A position, a power or a picture stays when its command is done, except with FOR. Power 0 is nothing, a number 0 is. A drive ends
+// its own.
 bool has_lasting_effect(const link::Event& event, const TraceNames& names) {
   const EventReader reader(event, names);
   if (names.image == nullptr || event.object >= names.image->verbs.size()) return false;
@@ -55,11 +57,12 @@ bool has_lasting_effect(const link::Event& event, const TraceNames& names) {
   const vm::Action action = names.image->verbs[event.object].action;
   if (action != vm::Action::set && action != vm::Action::move && action != vm::Action::follow)
     return false;
+  const bool power = !shows_pictures(names.image->actuators[event.subject]);
   bool lasts = true;
   reader.for_each_param([&](std::size_t param, vm::Value value) {
     const auto which = static_cast<vm::Param>(param);
     if (which == vm::Param::for_) lasts = false;
-    if (action == vm::Action::set && which == vm::Param::to && value == 0) lasts = false;
+    if (action == vm::Action::set && power && which == vm::Param::to && value == 0) lasts = false;
   });
   return lasts;
 }
@@ -100,7 +103,7 @@ TimelineRecorder::TimelineRecorder(const Program& program, const TraceNames& nam
     page_["actuators"].push_back({{"name", image_.string(actuator.name)},
                                   {"bars", Json::array()},
                                   {"halts", Json::array()}});
-  page_["pictures"] = pictures();
+  page_["pictures"] = Json::array();
   add_rules();
   add_signals();
 }
@@ -112,8 +115,10 @@ void TimelineRecorder::add_rules() {
         names_.origin != nullptr && i < names_.origin->rules.size() ? names_.origin->rules[i] : "";
     const std::uint16_t line = image_.rules[i].line;
     const bool elsewhere = !place.empty();
-    page_["rules"].push_back({{"name", elsewhere ? place : "line " + std::to_string(line)},
-                              {"line", elsewhere ? 0 : line}});
+    std::string name = elsewhere ? place : "line " + std::to_string(line);
+    const std::string safety = names_.origin != nullptr ? names_.origin->safety_name(i) : "";
+    if (!safety.empty()) name += " (" + safety + ")";
+    page_["rules"].push_back({{"name", name}, {"line", elsewhere ? 0 : line}});
   }
 }
 
@@ -255,6 +260,17 @@ void TimelineRecorder::see_actuator(const link::Event& event) {
   }
 }
 
+// In the list of those that the page shows.
+std::size_t TimelineRecorder::place_of(drivers::Picture picture) {
+  const auto place =
+      static_cast<std::size_t>(std::ranges::find(pictures_, picture) - pictures_.begin());
+  if (place == pictures_.size()) {
+    pictures_.push_back(picture);
+    page_["pictures"].push_back(rows_of(picture));
+  }
+  return place;
+}
+
 // The command without the actuator, which names the lane.
 void TimelineRecorder::begin_bar(const link::Event& event) {
   std::string text = trace_words(event, names_);
@@ -269,7 +285,7 @@ void TimelineRecorder::begin_bar(const link::Event& event) {
                                                        {"step", event.step}});
   if (shows_pictures(image_.actuators[event.subject]))
     if (const auto picture = picture_of(EventReader(event, names_)))
-      page_["actuators"][event.subject]["bars"].back()["picture"] = *picture;
+      page_["actuators"][event.subject]["bars"].back()["picture"] = place_of(*picture);
   moves_[event.subject] = true;
   lasts_[event.subject] = has_lasting_effect(event, names_);
 }

@@ -22,6 +22,7 @@
 
 #include "link/events.hpp"
 #include "rsc/program.hpp"
+#include "rsc/timeline/pictures.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/trace_format.hpp"
 
@@ -47,6 +48,7 @@ private:
   void see_rule(const link::Event& event);
   void see_actuator(const link::Event& event);
   void see_subject(const EventReader& reader);
+  std::size_t place_of(drivers::Picture picture);
   void begin_bar(const link::Event& event);
   void end_bar(std::size_t actuator, std::uint64_t at);
   void end_state(std::size_t actuator, std::uint64_t at);
@@ -59,6 +61,7 @@ private:
   const TraceNames& names_;
   Json page_;
   Json steps_ = Json::array();
+  std::vector<drivers::Picture> pictures_;          // that the page shows
   std::vector<std::optional<std::size_t>> owners_;  // of each actuator: the rule that started last
   std::vector<bool> moves_, halted_;                // … its last bar is open
   std::vector<bool> lasts_;                         // … what its last bar did lasts

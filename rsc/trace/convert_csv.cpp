@@ -1,10 +1,10 @@
-// See convert.hpp. The columns are the keys found in the trace.
+// See convert.hpp.
+#include <algorithm>
 #include <cstddef>
-#include <map>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "rsc/trace/convert.hpp"
 #include "rsc/trace/trace_file.hpp"
@@ -24,54 +24,43 @@ std::string cell_of(const std::string& text) {
   return cell + '"';
 }
 
-// In the order in which the trace first names them.
-class Columns {
-public:
-  std::size_t of(const std::string& name) {
-    const auto [found, is_new] = places_.try_emplace(name, names_.size());
-    if (is_new) names_.push_back(name);
-    return found->second;
+// The same in every file, so that the tables of several runs can be put together. Documented in docs/scenario.md; add new ones
+// before the last, which takes the keys that are no column of their own.
+constexpr std::string_view kColumns =
+    "program,t_us,step,event,sensor,channel,variable,value,unit,actuator,verb,word,to,by,at,over,"
+    "for,times,direction,item,"
+    "values,rule,behavior,safety,line,side,text,thread,priority,base,seed,late_us,failed,bus,"
+    "address,pin,trigger,echo,why,more";
+constexpr auto kCommas = static_cast<std::size_t>(std::ranges::count(kColumns, ','));
+
+// The cells of `line` in the order of the columns, with commas between them.
+std::string row_of(const TraceLine& line) {
+  nlohmann::ordered_json more = line.event;
+  std::string row = std::to_string(line.program);
+  std::string_view rest = kColumns;
+  for (std::size_t i = 1; i < kCommas; ++i) {
+    rest.remove_prefix(rest.find(',') + 1);
+    const std::string key(rest.substr(0, rest.find(',')));
+    row += ',' + cell_of(line.text(key.c_str()));
+    more.erase(key);
   }
-  const std::vector<std::string>& names() const { return names_; }
-
-private:
-  std::vector<std::string> names_;
-  std::map<std::string, std::size_t> places_;
-};
-
-using Row = std::vector<std::pair<std::size_t, std::string>>;  // column and cell
-
-void add_row(std::string& csv, const Row& row, std::size_t columns) {
-  std::vector<std::string_view> cells(columns);
-  for (const auto& [column, text] : row)
-    cells[column] = text;
-  for (std::size_t i = 0; i < columns; ++i)
-    csv.append(i == 0 ? "" : ",").append(cells[i]);
-  csv += "\r\n";
+  row += ',';
+  if (!more.empty())
+    row += cell_of(more.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return row;
 }
 
 }  // namespace
 
 std::string csv_of(const std::string& file) {
-  Columns columns;
-  for (const char* first : {"program", "t_us", "step", "event"})
-    columns.of(first);
-  std::vector<Row> rows;
+  constexpr std::string_view kEnd = "\r\n";
+  std::string csv(kColumns);
+  csv += kEnd;
   read_trace(file, [&](const TraceLine& line) {
     const std::string kind = line.text("event");
     if (kind == "image" || kind == "whole") return;  // only for rsc replay
-    Row row{{0, std::to_string(line.program)}};
-    for (const auto& [key, value] : line.event.items())
-      row.emplace_back(columns.of(key), cell_of(line.text(key.c_str())));
-    rows.push_back(std::move(row));
+    csv.append(row_of(line)).append(kEnd);
   });
-  std::string csv;
-  Row header;
-  for (std::size_t i = 0; i < columns.names().size(); ++i)
-    header.emplace_back(i, cell_of(columns.names()[i]));
-  add_row(csv, header, columns.names().size());
-  for (const Row& row : rows)
-    add_row(csv, row, columns.names().size());
   return csv;
 }
 

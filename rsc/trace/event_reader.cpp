@@ -112,10 +112,17 @@ std::string EventReader::rule_name() const {
   const vm::Rule* const found = rule();
   if (found == nullptr) return fmt::format("rule {}", event_.subject);
   const std::string place = place_of(event_.subject);
-  if (is_safety_rule()) return fmt::format("safety rule at {}", place);
+  if (is_safety_rule()) {
+    const std::string name = safety_name();
+    return fmt::format("safety rule {}{}at {}", name, name.empty() ? "" : " ", place);
+  }
   const std::string_view behavior = behavior_of_rule();
   return behavior.empty() ? fmt::format("rule at {}", place)
                           : fmt::format("{}, rule at {}", behavior, place);
+}
+
+std::string EventReader::safety_name() const {
+  return names_.origin != nullptr ? names_.origin->safety_name(event_.subject) : std::string();
 }
 
 std::string EventReader::place_of(std::size_t rule) const {
@@ -245,6 +252,35 @@ std::string EventReader::text() const {
 }
 
 // ---- values
+
+std::vector<EventReader::Duration> EventReader::durations() const {
+  if (event_.kind == link::EventKind::set && meaning().dimension == vm::Dimension::duration)
+    return {{}};
+  std::string text;
+  std::vector<std::size_t> filled;  // the values of its places
+  if (event_.kind == link::EventKind::command) {
+    text = written_word().value_or("");
+    std::size_t next = 2;
+    for_each_param([&](std::size_t param, vm::Value) {
+      if (is_said(param)) filled.push_back(next);
+      ++next;
+    });
+  } else if (shape_.subject == About::string && names_.image != nullptr) {
+    text = names_.image->string(event_.subject);
+    for (std::size_t i = 0; i < values().size(); ++i)
+      filled.push_back(i);
+  }
+  std::vector<Duration> durations;
+  std::string_view rest = text;
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const auto place = compiler::find_place(rest);
+    if (!place) break;
+    if (place->unit != nullptr && place->unit->dimension == vm::Dimension::duration)
+      durations.push_back({filled[i], i});
+    rest.remove_prefix(place->begin + place->size);
+  }
+  return durations;
+}
 
 Meaning EventReader::meaning() const {
   Meaning meaning;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "link/events.hpp"
 #include "rsc/trace/trace_format.hpp"
@@ -66,6 +67,8 @@ public:
   bool is_only_rule() const;
 
   std::string rule_name() const;
+  // Of a SAFETY rule, if its source is known; else empty.
+  std::string safety_name() const;
   std::int16_t base_priority() const;  // of the behaviour it is about, as written
   std::string behavior_name(std::uint16_t index) const;
   std::string sensor_name() const;     // of the subject, a sensor or a channel
@@ -89,6 +92,13 @@ public:
   std::string thread_words() const;  // "behaviour shy"
   // The text of LOG and ALERT, with the values filled into its {} places.
   std::string text() const;
+
+  // The durations, as a TIMER measures them, in a message, in what is said, or of a variable that is set.
+  struct Duration {
+    std::size_t value = 0;  // in values()
+    std::size_t place = 0;  // of the text, from 0
+  };
+  std::vector<Duration> durations() const;
 
   // Of the subject, a channel or a variable.
   Meaning meaning() const;

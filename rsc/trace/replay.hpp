@@ -24,6 +24,9 @@ struct Replayed {
   std::size_t commands = 0;    // … of these
   std::size_t late = 0;  // … of these events: that the board reported later than this computer, …
   std::uint64_t latest_us = 0;  // … at most by so much
+  std::size_t early =
+      0;  // … of these events: what SAFETY did before the step that tells the reading, …
+  std::uint64_t earliest_us = 0;  // … at most by so much
   std::optional<Difference> difference;
   // "touch.LEVEL": channels that a program run instead of the recorded one reads, and the recorded one did not. They
   // were not recorded, so they are unknown.

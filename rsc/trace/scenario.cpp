@@ -228,24 +228,28 @@ private:
       scenario_.stimuli.push_back({at, channel, vm::kUnknown});
   }
 
+  // A microphone whose channels are written out need not have a spectrum.
+  bool knows(std::string_view sensor, const char* channel) const {
+    const std::string name = fmt::format("{}.{}", sensor, channel);
+    return std::ranges::any_of(program_.origin().units.channels, [&](const auto& known) {
+      return compiler::ascii::same(known.first, name);
+    });
+  }
+
   // The channels of a microphone that the program, or an algorithm that it uses, reads.
   void read_sound(json_t* stimulus) {
     const std::string_view sensor = need_string(stimulus, "sensor");
     const std::string file = beside(need_string(stimulus, "sound"));
-    constexpr std::pair<const char*, vm::Value drivers::Heard::*> kChannels[] = {
-        {"LOUDNESS", &drivers::Heard::loudness},
-        {"HIGHS", &drivers::Heard::highs},
-        {"PITCH", &drivers::Heard::pitch},
-        {"CLARITY", &drivers::Heard::clarity}};
     const std::uint64_t begin = begin_of(stimulus);
-    const std::vector<drivers::Heard> blocks = named_by("sound", [&] { return hear_file(file); });
+    const std::vector<SoundBlock> blocks = named_by("sound", [&] { return hear_file(file); });
     bool is_read = false;
-    for (const auto& [name, part] : kChannels) {
-      const auto channel =
-          at_key("sensor", [&, name = name] { return find_read_channel(program_, sensor, name); });
+    for (std::size_t part = 0; part < kSoundChannels.size(); ++part) {
+      if (part >= vm::kFirstOfSpectrum && !knows(sensor, kSoundChannels[part])) continue;
+      const auto channel = at_key(
+          "sensor", [&] { return find_read_channel(program_, sensor, kSoundChannels[part]); });
       std::uint64_t at = begin;
-      for (const drivers::Heard& heard : blocks)
-        if (channel) add(at += drivers::kEarPeriodMs * std::uint64_t{1000}, *channel, heard.*part);
+      for (const SoundBlock& block : blocks)
+        if (channel) add(at += drivers::kEarPeriodMs * std::uint64_t{1000}, *channel, block[part]);
       if (channel) end_at(at + drivers::kEarPeriodMs * std::uint64_t{1000}, *channel);
       is_read = is_read || channel;
     }

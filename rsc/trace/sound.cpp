@@ -12,6 +12,7 @@
 
 #include "rsc/failure.hpp"
 #include "rsc/loaded_library.hpp"
+#include "vm/drivers.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -74,7 +75,7 @@ std::vector<std::int16_t> read_samples(const SoundFiles& library, SNDFILE* sound
 
 }  // namespace
 
-std::vector<drivers::Heard> hear_file(const std::string& file) {
+std::vector<SoundBlock> hear_file(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw Failure(Exit::outside, fmt::format("cannot read {}: there is no such file", file));
@@ -92,10 +93,14 @@ std::vector<drivers::Heard> hear_file(const std::string& file) {
   if (format.frames / format.samplerate > sf_count_t{3600} * kLongestHours)
     throw Failure(Exit::program, fmt::format("{}: it is longer than an hour", file));
   const std::vector<std::int16_t> samples = read_samples(library, sound.get(), format);
-  std::vector<drivers::Heard> heard;
+  std::vector<SoundBlock> heard;
   drivers::Ear ear;
-  for (std::size_t at = 0; at + drivers::kEarBlock <= samples.size(); at += drivers::kEarBlock)
-    heard.push_back(ear.hear(std::span(samples).subspan(at).first<drivers::kEarBlock>()));
+  for (std::size_t at = 0; at + drivers::kEarBlock <= samples.size(); at += drivers::kEarBlock) {
+    const auto [loudness, highs, pitch, clarity] =
+        ear.hear(std::span(samples).subspan(at).first<drivers::kEarBlock>());
+    SoundBlock& block = heard.emplace_back(SoundBlock{loudness, highs, pitch, clarity});
+    std::ranges::copy(ear.bands(), block.begin() + vm::kFirstOfSpectrum);
+  }
   return heard;
 }
 

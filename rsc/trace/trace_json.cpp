@@ -42,6 +42,7 @@ void add_rule(Json& object, const EventReader& reader) {
   if (const std::string_view behavior = reader.behavior_of_rule(); !behavior.empty()) {
     object["behavior"] = behavior;
   }
+  if (const std::string safety = reader.safety_name(); !safety.empty()) object["safety"] = safety;
   object["line"] = rule->line;
 }
 
@@ -54,12 +55,16 @@ void add_device(Json& object, const EventReader& reader) {
     object["echo"] = sensor->address;
     return;
   }
-  if (vm::is_analog(sensor->driver)) {
+  if (vm::is_analog(sensor->driver) || vm::counts_edges(sensor->driver)) {
     object["pin"] = sensor->address;
     return;
   }
-  if (vm::is_microphone(sensor->driver)) return;
+  if (vm::is_of_board(sensor->driver)) return;
   object["bus"] = sensor->bus;
+  if (vm::is_on_spi(sensor->driver)) {
+    object["pin"] = sensor->address;
+    return;
+  }
   object["address"] = fmt::format("0x{:02x}", sensor->address);
 }
 

@@ -116,7 +116,8 @@ std::string device_words(const EventReader& reader) {
   const vm::Sensor* const sensor = reader.sensor();
   const std::string text = sensor == nullptr
                                ? reader.sensor_name()
-                               : name_on_bus(reader.sensor_name(), sensor->address, sensor->bus);
+                               : name_on_bus(reader.sensor_name(), sensor->address, sensor->bus,
+                                             vm::is_on_spi(sensor->driver));
   const bool silent = reader.event().kind == EventKind::silent;
   if (sensor != nullptr && vm::is_by_echo(sensor->driver))
     return fmt::format("{}, trigger {} and echo {}, {} ({} times without one so far)",
@@ -126,9 +127,17 @@ std::string device_words(const EventReader& reader) {
     return fmt::format("{} on analog pin {} {} ({} times without a voltage so far)",
                        reader.sensor_name(), sensor->address,
                        silent ? "is not measured" : "is measured again", reader.value(0));
+  if (sensor != nullptr && vm::counts_edges(sensor->driver))
+    return fmt::format(
+        "{} on pin {} {} ({} times so far)", reader.sensor_name(), sensor->address,
+        silent ? "loses edges: there are more than a board counts" : "loses no edges any more",
+        reader.value(0));
   if (sensor != nullptr && vm::is_microphone(sensor->driver))
     return fmt::format("{} {} ({} times without sound so far)", reader.sensor_name(),
                        silent ? "hears nothing" : "hears again", reader.value(0));
+  if (sensor != nullptr && vm::is_board_part(sensor->driver))
+    return fmt::format("{} {} ({} times without a reading so far)", reader.sensor_name(),
+                       silent ? "is not measured" : "is measured again", reader.value(0));
   if (sensor != nullptr && vm::measures_when_told(sensor->driver))
     return text + fmt::format(" {} ({} times without a distance so far)",
                               silent ? "sees nothing" : "sees something again", reader.value(0));

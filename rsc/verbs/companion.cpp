@@ -47,7 +47,8 @@ void list(const CompanionOptions& options) {
 
 // The algorithms of robot.json that run here.
 std::vector<compiler::SensorConfig> algorithms_of(const std::string& config) {
-  std::vector<compiler::SensorConfig> found = companion_algorithms(config, true);
+  std::vector<compiler::SensorConfig> found = algorithms_in(config, true);
+  std::erase_if(found, [](const auto& sensor) { return !sensor.companion; });
   if (found.empty())
     throw Failure(Exit::program, fmt::format("{} has no algorithm that runs on a companion "
                                              "computer; `rsc companion --list` lists them",

@@ -20,6 +20,7 @@
 #include "rsc/device/uploader.hpp"
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/interruptible.hpp"
 #include "rsc/output.hpp"
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/scenario.hpp"
@@ -34,6 +35,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kQueueTimeout{30000};
 constexpr milliseconds kQueuePause{5};  // a request and its reply take 4 ms on the line
+constexpr milliseconds kShow{100};      // at the latest so long after it happens
 constexpr std::uint64_t kFirstMomentsUs = 1'000'000;
 constexpr std::uint64_t kLeadUs = 50'000;  // time to send a dozen readings before the first is due
 
@@ -84,10 +86,15 @@ std::string describe(link::FeedError error, const vm::Image& image, const Stimul
   return fmt::format("the board refused the reading of {}", name);
 }
 
-// Sends readings, each in time if the line is fast enough.
+// Sends readings, each in time if the line is fast enough. Ends early when the user interrupts.
 class Feeder {
 public:
-  Feeder(Session& session, const vm::Image& image) : session_(session), image_(image) {}
+  // `watch` shows meanwhile what the board does; may be null.
+  Feeder(Session& session, const vm::Image& image, Watch* watch)
+      : session_(session),
+        image_(image),
+        watch_(watch),
+        listens_at_(session.client.now() + kShow) {}
 
   // Times of the scenario count from program time `from_us`, which may be slightly in the past: readings due right after a
   // program starts cannot arrive in time, so they are sent as soon as possible.
@@ -97,6 +104,7 @@ public:
       const bool is_early = stimulus.at_us <= kFirstMomentsUs;
       stimulus.at_us += from_us;
       last_due_us_ = std::max(last_due_us_, stimulus.at_us);
+      if (is_ended_) return;
       if (is_early && hand_over_early(stimulus)) continue;
       if (!hand_over(stimulus))
         throw Failure(Exit::program,
@@ -107,6 +115,7 @@ public:
 
   // For the time given by --at, or for now.
   void feed(const Stimulus& stimulus) {
+    if (is_ended_) return;
     last_due_us_ = std::max(last_due_us_, stimulus.at_us);
     if (!hand_over(stimulus))
       throw Failure(Exit::program,
@@ -122,6 +131,9 @@ public:
         late_, late_ == 1 ? "" : "s", late_ == 1 ? "it" : "them");
   }
 
+  [[nodiscard]] bool is_ended() const { return is_ended_; }
+  [[nodiscard]] std::size_t sent() const { return sent_; }
+
   // Until the last one is due.
   milliseconds rest() {
     if (last_due_us_ == 0) return milliseconds(0);
@@ -133,6 +145,12 @@ private:
   void read_clock() {
     program_us_ = session_.client.status().program_us;
     read_at_ = session_.client.now();
+  }
+
+  // By the board's clock: an emulated one may be slow.
+  bool is_due(const Stimulus& stimulus) {
+    read_clock();
+    return stimulus.at_us <= program_us_;
   }
 
   std::uint64_t program_us() const {
@@ -148,23 +166,44 @@ private:
     return hand_over({0, stimulus.channel, stimulus.value});
   }
 
-  // False if its time has passed. A full queue empties as time passes.
+  // False if its time has passed. True also if it is not sent because the user interrupts. A full queue empties as time passes: until
+  // this reading is due, those before it may fill it.
   bool hand_over(const Stimulus& stimulus) {
     const auto give_up = session_.client.now() + kQueueTimeout;
     const link::Feed feed{
         .channel = stimulus.channel, .at_us = stimulus.at_us, .value = stimulus.value};
-    while (true) {
+    while (!is_ended_) {
       const link::FeedResult result = session_.client.feed(feed);
-      if (result.error == link::FeedError::none) return true;
       if (result.error == link::FeedError::in_the_past) return false;
-      if (result.error != link::FeedError::queue_full || session_.client.now() >= give_up)
+      const bool is_full = result.error == link::FeedError::queue_full;
+      if (result.error == link::FeedError::none) {
+        ++sent_;
+      } else if (!is_full || (session_.client.now() >= give_up && is_due(stimulus))) {
         throw Failure(Exit::program, describe(result.error, image_, stimulus));
-      std::this_thread::sleep_for(kQueuePause);
+      }
+      pass_time(is_full);
+      if (!is_full) return true;
     }
+    return true;
+  }
+
+  // Listening may take some requests, so the first readings come first, and a full queue has the most time for it.
+  void pass_time(bool is_full) {
+    if (watch_ == nullptr) {
+      if (is_full) std::this_thread::sleep_for(kQueuePause);
+      return;
+    }
+    if (!is_full && session_.client.now() < listens_at_) return;
+    is_ended_ = !watch_->listen(is_full ? kQueuePause : milliseconds(0));
+    listens_at_ = session_.client.now() + kShow;
   }
 
   Session& session_;
   const vm::Image& image_;
+  Watch* watch_;
+  Transport::Clock::time_point listens_at_;
+  bool is_ended_ = false;
+  std::size_t sent_ = 0;
   std::uint64_t program_us_ = 0, last_due_us_ = 0;
   Transport::Clock::time_point read_at_;
   std::size_t late_ = 0;
@@ -250,6 +289,21 @@ UploadOptions how_to_upload(const FeedOptions& options) {
   return how;
 }
 
+// The user may interrupt what the watch shows. What a line that fails has brought is shown, too.
+void send(Feeder& feeder, const Wanted& stimuli, std::uint64_t begin_us,
+          std::optional<Watch>& watch) {
+  std::optional<Interruptible> interruptible;
+  if (watch) interruptible.emplace();
+  try {
+    if (!stimuli.scenario.empty()) feeder.play(stimuli.scenario, begin_us);
+    for (const Stimulus& stimulus : stimuli.readings)
+      feeder.feed(stimulus);
+  } catch (const Failure&) {
+    if (watch) watch->tell_the_rest();
+    throw;
+  }
+}
+
 // Errors in the scenario are reported before anything is uploaded.
 void feed(const FeedOptions& options) {
   check_what_is_asked(options);
@@ -274,14 +328,16 @@ void feed(const FeedOptions& options) {
     program = running_program(*session);
     stimuli = wanted_of_running(options, *session, *program);
   }
-  Feeder feeder(*session, program->image());
-  if (!stimuli.scenario.empty())
-    feeder.play(stimuli.scenario, begin_of_scenario(options, *session));
-  for (const Stimulus& stimulus : stimuli.readings)
-    feeder.feed(stimulus);
+  Feeder feeder(*session, program->image(), watch ? &*watch : nullptr);
+  const std::uint64_t begin_us =
+      stimuli.scenario.empty() ? 0 : begin_of_scenario(options, *session);
+  send(feeder, stimuli, begin_us, watch);
   feeder.note_late();
   const std::size_t count = stimuli.scenario.size() + stimuli.readings.size();
-  if (watch) {
+  if (feeder.is_ended()) {
+    watch->show(milliseconds(0));
+    std::cerr << fmt::format("note: ended after {} of {} readings\n", feeder.sent(), count);
+  } else if (watch) {
     watch->show(*options.watch + feeder.rest());
     if (!options.upload.empty())
       expect_passed_trial(options.upload, session->client.kept(), *program);

@@ -33,6 +33,10 @@ struct FixOptions {
 // The files with the fixes so far; nothing is written before the end.
 class MendedTexts : public Texts {
 public:
+  MendedTexts() = default;
+  MendedTexts(const MendedTexts& other)
+      // NOLINTNEXTLINE(readability-redundant-member-init): without it GCC warns
+      : Texts(), mended_(other.mended_) {}
   [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
     const auto found = mended_.find(path.string());
     return found != mended_.end() ? found->second : Texts::read(path);
@@ -59,7 +63,8 @@ public:
     texts_.write();
     show_diagnostics(result, options_.quiet);
     if (!options_.quiet)
-      std::cout << fmt::format("{}: {} fixed; {}\n", file_, mended_, summary(result.diagnostics));
+      std::cout << fmt::format("{}: {} fixed{}; {}\n", file_, mended_, more(result),
+                               summary(result.diagnostics));
     if (result.diagnostics.errors() > 0) throw Failure(Exit::program, "");
   }
 
@@ -69,23 +74,59 @@ private:
     std::vector<Fix> fixes;
     for (const compiler::Diagnostic& diagnostic : result.diagnostics.all())
       for (const Fix& fix : diagnostic.fixes)
-        if (is_wanted(diagnostic, fix, result.sources)) fixes.push_back(fix);
+        if (is_wanted(diagnostic, fix, result)) fixes.push_back(fix);
     const auto place = [](const Fix& fix) { return std::pair(fix.span.file, fix.span.begin); };
     std::ranges::sort(fixes, std::ranges::greater{}, place);
     return fixes;
   }
 
   bool is_wanted(const compiler::Diagnostic& diagnostic, const Fix& fix,
-                 const compiler::SourceMap& sources) {
+                 const compiler::Result& result) {
+    const compiler::SourceMap& sources = result.sources;
     const compiler::SourceFile& file = sources.file(fix.span.file);
     if (file.name().starts_with('<')) return false;  // a library module
     if (fix.applicability == Applicability::certain)
       return diagnostic.level == compiler::Level::error;
-    if (!options_.likely || fix.applicability != Applicability::likely) return false;
+    if (!options_.likely || !is_likely(fix, result)) return false;
     const std::string question = fmt::format("{}:{}: {}\n  `{}` -> `{}`? [y/N] ", file.name(),
                                              file.position(fix.span.begin).line, diagnostic.message,
                                              sources.text(fix.span), fix.replacement);
     return asked_.insert(question).second && says_yes(question);
+  }
+
+  // Likely, and no new error stands in its line afterwards.
+  bool is_likely(const Fix& fix, const compiler::Result& result) const {
+    if (fix.applicability != Applicability::likely) return false;
+    MendedTexts tried = texts_;
+    const compiler::SourceFile& file = result.sources.file(fix.span.file);
+    std::string text(file.text());
+    const std::uint32_t line = file.position(fix.span.begin).line;
+    text.replace(fix.span.begin, end_of(fix, text) - fix.span.begin, fix.replacement);
+    tried.set(std::string(file.name()), std::move(text));
+    return std::ranges::includes(
+        errors_in(line, fix.span.file, result),
+        errors_in(line, fix.span.file, compile_file(file_, options_.how, tried)));
+  }
+
+  static std::set<std::string> errors_in(std::uint32_t line, compiler::FileId file,
+                                         const compiler::Result& result) {
+    std::set<std::string> errors;
+    for (const compiler::Diagnostic& one : result.diagnostics.all())
+      for (const compiler::Label& label : one.labels)
+        if (one.level == compiler::Level::error && label.primary && label.span.file == file &&
+            result.sources.file(file).position(label.span.begin).line == line)
+          errors.insert(one.message);
+    return errors;
+  }
+
+  // How many fixes --likely would ask about.
+  std::string more(const compiler::Result& result) const {
+    if (options_.likely) return "";
+    const auto likely = [&](const compiler::Diagnostic& one) {
+      return std::ranges::any_of(one.fixes, [&](const Fix& fix) { return is_likely(fix, result); });
+    };
+    const auto count = std::ranges::count_if(result.diagnostics.all(), likely);
+    return count == 0 ? "" : fmt::format(", {} more with --likely", count);
   }
 
   static bool says_yes(const std::string& question) {

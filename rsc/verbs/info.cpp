@@ -65,7 +65,7 @@ Json board_json(const link::HelloReply& board, std::span<const std::byte> image)
               {"opcode_set", board.opcode_set},
               {"memory", memory_json(board, image)},
               {"step_budget", board.step_budget},
-              {"drivers", board.drivers},
+              {"drivers", link::drivers_of(board)},
               {"receive_window", board.receive_window},
               {"program", nullptr}};
   if (board.running != 0) {

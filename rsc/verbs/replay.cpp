@@ -34,10 +34,10 @@ struct ReplayOptions {
 RecordedRun recording_of(const ReplayOptions& options) {
   RecordedRun run = read_recording(options.file);
   if (run.programs.empty())
-    throw Failure(
-        Exit::program,
-        options.file +
-            ": no program starts in it before any gap; start recording before the upload");
+    throw Failure(Exit::program, options.file +
+                                     ": no program starts in it before any gap: start recording "
+                                     "before the upload, and end it "
+                                     "after the program has started");
   for (const RecordedProgram& one : run.programs)
     if (one.image.empty() && options.program.empty())
       throw Failure(Exit::usage, fmt::format("{}:{}: the program that starts here is not in it: "
@@ -74,6 +74,12 @@ void print_human(const ReplayOptions& options, std::size_t number, const Recorde
     std::cout << fmt::format(
         "  {} of the events were recorded later than in the replay, by at most {} ms\n",
         replayed.late, replayed.latest_us / 1000);
+  if (replayed.early > 0)
+    std::cout << fmt::format(
+        "  {} of the events were recorded earlier than in the replay, by at most {} ms: SAFETY "
+        "sees a "
+        "reading before the step that tells it\n",
+        replayed.early, replayed.earliest_us / 1000);
   print_program(options, recorded, image, replayed);
   if (!recorded.gap.empty())
     std::cout << fmt::format("  from there on the recording has a gap: {}\n", recorded.gap);
@@ -96,6 +102,8 @@ Json json_of(const RecordedProgram& recorded, std::span<const std::byte> image,
               {"latest_us", replayed.latest_us},
               {"gap", recorded.gap.empty() ? Json(nullptr) : Json(recorded.gap)},
               {"difference", nullptr}};
+  report["early"] = replayed.early;
+  report["earliest_us"] = replayed.earliest_us;
   const auto parsed = [](const std::string& line) {
     return line.empty() ? Json(nullptr) : Json::parse(line);
   };

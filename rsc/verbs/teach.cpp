@@ -28,8 +28,8 @@ struct TeachOptions {
 // The words themselves are not read: there may be none yet, and the module's program reports errors in them.
 compiler::SensorConfig algorithm_of(const TeachOptions& options) {
   std::string known;
-  for (const compiler::SensorConfig& sensor : companion_algorithms(options.config, false)) {
-    if (sensor.companion->words_file.empty()) continue;
+  for (const compiler::SensorConfig& sensor : algorithms_in(options.config, false)) {
+    if (sensor.words_file.empty()) continue;
     if (compiler::ascii::same(sensor.name.text, options.name)) return sensor;
     known += (known.empty() ? "" : ", ") + sensor.name.text;
   }
@@ -76,13 +76,13 @@ std::vector<std::string> task(const TeachOptions& options) {
 
 void run(const TeachOptions& options) {
   std::vector<std::string> arguments = task(options);
-  const compiler::CompanionConfig config = *algorithm_of(options).companion;
-  arguments.insert(arguments.begin(), {"--words", config.words_file});
-  const std::string program = find_companion_program(config.module, options.programs);
+  const compiler::SensorConfig algorithm = algorithm_of(options);
+  arguments.insert(arguments.begin(), {"--words", algorithm.words_file});
+  const std::string program = find_companion_program(algorithm.taught_by, options.programs);
   if (program.empty())
     throw Failure(Exit::outside, fmt::format("the program for the module {} is not installed: run "
                                              "scripts/companion (docs/companion.md)",
-                                             config.module));
+                                             algorithm.taught_by));
   become(program, arguments);
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -58,10 +59,24 @@ void expect_different_lines(const std::vector<std::string>& ports) {
   }
 }
 
+// A name tells robots apart, so that a wrong --port does not put one robot's program on another.
+void expect_no_name(const SendOptions& options, const Program& program) {
+  const std::string_view name = program.image().robot_name();
+  if (name.empty() || options.anyway) return;
+  throw Failure(
+      Exit::usage,
+      fmt::format("{} is for the robot \"{}\", says its robot.json (\"name\"), and {} robots would "
+                  "all get this name: "
+                  "upload to each with a robot.json of its own (--config), or leave out \"name\"; "
+                  "--anyway gives all of them the name. Nothing was sent",
+                  options.file, name, options.ports.size()));
+}
+
 void upload(const SendOptions& options) {
   expect_different_lines(options.ports);
   const Program program = load_program(options.file, options.how);
   if (options.ports.size() == 1) return upload_to_one(options, program);
+  expect_no_name(options, program);
   upload_to_several(options, program);
 }
 

@@ -33,8 +33,35 @@ enum { ROBOSYNC_ABI = 1 };
 // The largest numbers of inputs, outputs and parameters of a module.
 enum { ROBOSYNC_MOST_INPUTS = 4, ROBOSYNC_MOST_OUTPUTS = 8, ROBOSYNC_MOST_PARAMETERS = 12 };
 
-// The most bytes that state_bytes(), rounded up to a multiple of 8, and scratch_bytes() may add up to.
-enum { ROBOSYNC_MOST_BYTES = 96 };
+// The most bytes that state_bytes(), rounded up to a multiple of 8, and scratch_bytes() may add up to; in the firmware a module may
+// have more, in steps of ROBOSYNC_ROOM.
+enum { ROBOSYNC_MOST_BYTES = 96, ROBOSYNC_ROOM = 1024 };
+
+// A module that learns gets constants from a file that robot.json names. It sees so many of them at a time: its state begins with
+// robosync_taught. Whenever process() is called, `constants` are those from `shown` on. `first`, which init() sets to 0, is where
+// they shall begin in the next call. init() leaves the rest as it is.
+enum { ROBOSYNC_VIEW = 372 };
+typedef struct robosync_taught {
+  uint32_t first, shown;
+  uint32_t count;  // of all constants
+  int32_t constants[ROBOSYNC_VIEW];
+} robosync_taught;
+
+// The most that an image may hold for one module.
+enum { ROBOSYNC_MOST_CONSTANTS = 8192 };
+
+// Brings the constants into view that a module wants to see.
+static inline void robosync_show(robosync_taught* taught, const int32_t* constants,
+                                 uint32_t count) {
+  const uint32_t first = taught->first < count ? taught->first : count;
+  uint32_t shown = count - first;
+  if (shown > ROBOSYNC_VIEW) shown = ROBOSYNC_VIEW;
+  if (taught->shown == first && taught->count == count) return;
+  for (uint32_t i = 0; i < shown; ++i)
+    taught->constants[i] = constants[first + i];
+  taught->shown = first;
+  taught->count = count;
+}
 
 // One, and the value that means unknown: an output that is left at it has no new reading.
 enum { ROBOSYNC_ONE = 1000 };
@@ -48,6 +75,7 @@ enum {
   ROBOSYNC_HERTZ = 9,
   ROBOSYNC_G = 12,
   ROBOSYNC_DECIBEL = 14,
+  ROBOSYNC_MICROTESLA = 15,
   ROBOSYNC_COUNT = 254,  // of a parameter: a number without decimals
   ROBOSYNC_AS_INPUT = 255
 };
@@ -82,6 +110,7 @@ static inline uint32_t robosync_no_scratch(const int32_t* config) {
 
 typedef struct robosync_module {
   uint8_t inputs, outputs, parameters;  // how many
+  uint8_t learns;                       // 1: it has constants (robosync_taught)
   uint16_t shortest_period_ms, longest_period_ms;
   const robosync_range* ranges;  // of the parameters
 

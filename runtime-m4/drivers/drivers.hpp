@@ -56,6 +56,8 @@ struct Device {
   void drive(std::uint32_t pulse_us, kernel::Time now) const {
     outputs.drive(state.actuator, pulse_us, now);
   }
+  // Of a servo.
+  vm::ServoPulses pulses() const { return outputs.pulses_of(state.actuator); }
   void begin_order() const { outputs.begin_order(state.actuator); }
   // For a driver with two pins: drives the second one if the pulse is negative.
   void drive_either(std::int32_t pulse_us, kernel::Time now) const {
@@ -99,12 +101,14 @@ struct Driver {
   ReleaseFunction release = nullptr;
 };
 
-// Code for lights, speakers and microphones is left out if the board has none; code for displays, players and panels if they
-// cannot be connected.
+// Code for lights, speakers and microphones is left out if the board has none; code for displays, players, panels and parts on
+// SPI if they cannot be connected.
 constexpr bool is_present(vm::DriverId id) {
   if (vm::is_microphone(id)) return boards::kHasMicrophone;
+  if (vm::is_board_part(id)) return boards::kHasParts;
   if (vm::drives_lights(id)) return boards::kHasLights;
   if (vm::drives_screen(id)) return boards::kHasI2c;
+  if (vm::is_on_spi(id)) return boards::kHasSpi;
   if (vm::drives_player(id)) return boards::kHasSerialLine;
   if (vm::drives_panel(id)) return boards::kHasPanel;
   return boards::kHasSpeaker || !vm::drives_speaker(id);
@@ -125,10 +129,10 @@ inline constexpr Driver kDrivers[] = {
 };
 
 // Bit d: driver d is in this firmware (vm::Limits::drivers).
-inline constexpr std::uint32_t kPresent = [] {
-  std::uint32_t present = 0;
+inline constexpr std::uint64_t kPresent = [] {
+  std::uint64_t present = 0;
   for (unsigned d = 0; d < sizeof kDrivers / sizeof kDrivers[0]; ++d)
-    if (is_present(static_cast<vm::DriverId>(d))) present |= std::uint32_t{1} << d;
+    if (is_present(static_cast<vm::DriverId>(d))) present |= std::uint64_t{1} << d;
   return present;
 }();
 

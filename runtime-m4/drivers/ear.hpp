@@ -1,6 +1,6 @@
-// What a microphone's driver makes of sound: four numbers for each 20 ms. The sound itself goes no further: a block of it is
-// larger than all the memory of an algorithm's module, and three times what the link carries. Integers only, so the result is
-// the same everywhere: rsc hears recordings with it.
+// What a microphone's driver makes of sound: four numbers for each 20 ms, and the spectrum for modules that recognise words. The
+// sound itself goes no further: a block of it is larger than all the memory of most modules, and three times what the link carries.
+// Integers only, so the result is the same everywhere: rsc hears recordings with it.
 //
 // Pitch is found by autocorrelation: the lag after which the sound repeats. Low pitches are searched in means of two
 // samples, which is a quarter of the work; high ones in all samples. For a single tone the result is accurate to 1 %.
@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/drivers/spectrum.hpp"
 #include "vm/value.hpp"
 
 namespace robosync::drivers {
@@ -34,6 +35,11 @@ public:
   // The same in two parts, for a block that is written where it is heard: it is to be filled, or forgotten.
   [[nodiscard]] std::span<std::int16_t, kEarBlock> next();
   [[nodiscard]] Heard hear_next();
+  // The spectrum of the latest block, and of more than half of the one before.
+  [[nodiscard]] BandValues bands() {
+    return bands_of(std::span(past_).last<kSpectrumWindow + 1>(),
+                    std::span(work_).first<kSpectrumWindow>());
+  }
   // Samples were lost: the next block follows on silence.
   void forget();
 

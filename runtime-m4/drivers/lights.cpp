@@ -1,33 +1,15 @@
-// A picture on the board's lights. SHOW shows one, which stays; with FOR it goes dark afterwards. BLINK closes
+// A picture on the board's lights. SHOW shows one, or a number, which stays; with FOR it goes dark afterwards. BLINK closes
 // the eyes of the picture shown: TIMES blinks, all within OVER.
-#include <array>
-#include <string_view>
-
 #include "runtime-m4/drivers/blink.hpp"
+#include "runtime-m4/drivers/pictures.hpp"
 #include "runtime-m4/drivers/timed.hpp"
 
 namespace robosync::drivers::lights {
 namespace {
 
-constexpr std::uint32_t rows(std::string_view a, std::string_view b, std::string_view c,
-                             std::string_view d, std::string_view e) {
-  std::uint32_t picture = 0;
-  unsigned light = 0;
-  for (const std::string_view row : {a, b, c, d, e})
-    for (const char sign : row)
-      picture |= std::uint32_t{sign == '#'} << light++;
-  return picture;
-}
-
-constexpr std::array kPictures = {
-#define PICTURE(name, a, b, c, d, e) rows(a, b, c, d, e),
-#include "runtime-m4/drivers/pictures.def"
-#undef PICTURE
-};
-
-std::uint32_t picture_of(vm::Value item) {
-  const auto index = static_cast<std::uint32_t>(item / vm::kScale);
-  return index < kPictures.size() ? kPictures[index] : 0;
+Picture picture_of(const Order& order) {
+  return order.has(vm::Param::to) ? number_picture(order.get(vm::Param::to, 0))
+                                  : named_picture(order.get(vm::Param::item, 0));
 }
 
 // A leg is over. The first leg is dark, the last one lit.
@@ -54,7 +36,7 @@ kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   device.state.legs = 0;
   if (order.action == vm::Action::play) return blink(device, order, now);
   const bool shows = order.action == vm::Action::set;
-  device.state.home = static_cast<vm::Value>(shows ? picture_of(order.get(vm::Param::item, 0)) : 0);
+  device.state.home = static_cast<vm::Value>(shows ? picture_of(order) : 0);
   device.show(static_cast<std::uint32_t>(device.state.home));
   if (!shows || !order.has(vm::Param::for_)) return kDone;
   return take_time(device, order, now);

@@ -1,5 +1,5 @@
-// The microphone of the board: every 20 ms the board hands over a block of sound, and the channels are what the ear hears in it.
-// It has state, so the sampler keeps it.
+// The microphone of the board: every 20 ms the board hands over a block of sound, and the channels are what the ear hears in it,
+// or its spectrum; only what a program has channels for is computed. It has state, so the sampler keeps it.
 #pragma once
 
 #include "runtime-m4/boards/board.hpp"
@@ -15,11 +15,12 @@ public:
   bool sample(boards::Board& board, bool is_first, const vm::Channel& channel, vm::Value& value);
 
 private:
-  void listen(boards::Board& board);
+  [[nodiscard]] vm::Value part(unsigned input);
 
   Ear ear_;
   Heard heard_;
-  bool hears_ = false;
+  BandValues bands_{};
+  bool hears_ = false, has_heard_ = false, has_bands_ = false;
 };
 
 }  // namespace robosync::drivers

@@ -5,20 +5,22 @@
 //
 // After a loss of power it sleeps, and its outputs are 0. Its gyroscope takes 30 ms to settle. What is read together was measured
 // together, so the two bytes of a count do not change between their reads.
-#include "runtime-m4/drivers/six_axes.hpp"
+#include "runtime-m4/drivers/axes_chip.hpp"
 
 namespace robosync::drivers::mpu6050 {
 namespace {
 
-constexpr SixAxes kChip = {
+constexpr AxesChip kChip = {
     // CONFIG: filter 2; GYRO_CONFIG: 500 deg/s; ACCEL_CONFIG: 4 g.
-    .setting = {std::byte{0x1A}, std::byte{0x02}, std::byte{0x08}, std::byte{0x08}},
+    .told = {std::byte{0x1A}, std::byte{0x02}, std::byte{0x08}, std::byte{0x08}},
+    .settings = 3,
+    .inputs = AxesChip::kInputs,
     // PWR_MGMT_1: no sleep, and a gyroscope's clock, which is better than the chip's internal one.
     .wake = {std::byte{0x6B}, std::byte{0x01}},
     .output = std::byte{0x3B},
-    .outputs = 14,
-    .acceleration = 0,
-    .turning = 8,
+    .read = 3 + 14,
+    .acceleration = 1 + 3,
+    .turning = 1 + 3 + 8,
     .order = std::endian::big,
 };
 
@@ -26,7 +28,7 @@ constexpr SixAxes kChip = {
 
 bool read(boards::Board& board, const vm::Sensor& sensor, const vm::Channel& channel,
           std::int32_t& raw) {
-  return read_six_axes(board, sensor, channel, kChip, raw);
+  return read_axes(board, sensor, channel, kChip, raw);
 }
 
 }  // namespace robosync::drivers::mpu6050

@@ -9,15 +9,15 @@ namespace {
 bool transfer(const ServedBus& at, bool ahead, std::span<const std::byte> out,
               std::span<std::byte> in) {
   const kernel::MutexGuard mine(at.kernel, at.buses);
-  if (ahead) at.board.i2c_ask(true);
+  if (ahead) at.board.ask_buses(true);
   const bool done = at.board.i2c_transfer(at.bus, at.address, out, in);
-  if (ahead) at.board.i2c_ask(false);
+  if (ahead) at.board.ask_buses(false);
   return done;
 }
 
 // Until the requested transfer is done, or late.
 void await(const ServedBus& at) {
-  for (unsigned i = 0; i <= policy::kBusTicks && (i == 0 || at.board.i2c_busy()); ++i)
+  for (unsigned i = 0; i <= policy::kBusTicks && (i == 0 || at.board.buses_busy()); ++i)
     at.kernel.sleep_until(at.kernel.now() + kernel::kTick);
 }
 
@@ -25,7 +25,7 @@ void await(const ServedBus& at) {
 
 [[gnu::noinline]] bool exchange(const ServedBus& at, std::span<const std::byte> out,
                                 std::span<std::byte> in, unsigned tries) {
-  const bool ahead = at.board.i2c_asks_ahead();
+  const bool ahead = at.board.buses_ask_ahead();
   for (; tries != 0; --tries) {
     if (ahead) {
       static_cast<void>(transfer(at, true, out, in));

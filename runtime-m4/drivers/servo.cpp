@@ -1,5 +1,5 @@
-// A hobby servo: a setpoint every 20 ms, pulses of 500 to 2500 us over the range of the actuator. For how it
-// moves see way.hpp.
+// A hobby servo: a setpoint every 20 ms, pulses of 500 to 2500 us, or those of its image, over the range of the actuator. For how
+// it moves see way.hpp.
 #include <algorithm>
 
 #include "runtime-m4/drivers/way.hpp"
@@ -13,7 +13,7 @@ constexpr vm::Value kDefaultSpeed = 90 * vm::kScale;  // thousandths of a degree
 void output(const Device& device, kernel::Time now) {
   const vm::Value position =
       std::clamp(way::position(device, now), device.wiring.min, device.wiring.max);
-  device.drive(policy::pulse_at(device.wiring, position), now);
+  device.drive(policy::pulse_at(device.wiring, device.pulses(), position), now);
 }
 
 kernel::Time follow(const Device& device, kernel::Time now) {

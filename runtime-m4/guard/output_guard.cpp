@@ -23,8 +23,8 @@ constexpr OutputGuard::Mask bit(unsigned actuator) {
 constexpr policy::PinLimit kOnChips{
     .first = 0,
     .last = vm::kChipChannels - 1,
-    .shortest = policy::kShortestPulse,
-    .longest = policy::kShortestPulse + policy::kPulseSpan,
+    .shortest = vm::kServoPulses.at_min,
+    .longest = vm::kServoPulses.at_max,
     .rise = 0,
 };
 
@@ -48,18 +48,6 @@ std::uint16_t within(const policy::PinLimit& limit, std::uint32_t pulse_us) {
 // The actuator's pin or serial line.
 constexpr std::uint16_t place_of(const vm::Actuator& actuator) {
   return vm::drives_player(actuator.driver) ? actuator.bus : actuator.pin;
-}
-
-// Is the pin an output of an actuator or a sensor, or released for a sensor?
-bool has_pin(const vm::Image& image, std::uint16_t pin) {
-  const bool drives = vm::any_wired(image, [&](const vm::Actuator& actuator) {
-    return vm::drives_pin(actuator.driver) &&
-           (actuator.pin == pin || (vm::has_two_pins(actuator.driver) && actuator.bus == pin));
-  });
-  return drives || std::ranges::any_of(image.sensors, [&](const vm::Sensor& sensor) {
-           return (vm::is_by_echo(sensor.driver) && sensor.bus == pin) ||
-                  (vm::is_analog(sensor.driver) && sensor.address == pin);
-         });
 }
 
 bool can_tell(const vm::Actuator& actuator, const policy::BoardPins& pins) {
@@ -96,45 +84,8 @@ bool OutputGuard::drives(const vm::Image& image, const Slot& slot) {
   });
 }
 
-OutputGuard::Pins OutputGuard::measured_by(const vm::Image& image) const {
-  Pins pins = 0;
-  for (const vm::Sensor& sensor : image.sensors)
-    if (vm::is_analog(sensor.driver) && policy::is_analog(board_.pins(), sensor.address))
-      pins |= Pins{1} << sensor.address;
-  return pins;
-}
-
-void OutputGuard::take_back_all_but(Pins measured) {
-  for (Pins left = let_go_ & ~measured; left != 0; left &= left - 1)
-    board_.take_back(static_cast<std::uint16_t>(std::countr_zero(left)));
-  let_go_ &= measured;
-}
-
-void OutputGuard::let_go_of(Pins measured) {
-  for (Pins left = measured & ~let_go_; left != 0; left &= left - 1)
-    board_.let_go(static_cast<std::uint16_t>(std::countr_zero(left)));
-  let_go_ |= measured;
-}
-
 void OutputGuard::listen(bool on) {
   if (boards::kHasMicrophone) board_.listen(on);
-}
-
-// Their pins are unused afterwards.
-void OutputGuard::end_measurements() {
-  const auto lock = kernel_.lock();
-  for (const vm::Sensor& sensor : sensors_)
-    if (vm::is_by_echo(sensor.driver)) static_cast<void>(board_.take_echo(sensor.address));
-  sensors_ = {};
-}
-
-void OutputGuard::ping(unsigned sensor) {
-  const auto lock = kernel_.lock();
-  if (sensor >= sensors_.size()) return;
-  const vm::Sensor& wiring = sensors_[sensor];
-  const policy::BoardPins& pins = board_.pins();
-  if (vm::is_by_echo(wiring.driver) && policy::judge(wiring, pins) == vm::Refusal::none)
-    board_.ping(wiring.bus, wiring.address);
 }
 
 // Turns off the pins that `next` does not drive in the same way. With SAFETY rules it also turns off power: the rules are not
@@ -148,7 +99,8 @@ void OutputGuard::switch_off(const vm::Image* next) {
     owned = std::exchange(owned_, 0);
     free_ = lagging_ = 0;
   }
-  take_back_all_but(next != nullptr ? measured_by(*next) : 0);
+  if (boards::kHasSpi) board_.spi_close();
+  take_back_all_but(next != nullptr ? read_by(*next) : ReadPins{});
   if (lights() != 0) board_.show(0);
   if (speaker() != 0) board_.sound(0);
   switch_chips_off();
@@ -168,7 +120,10 @@ void OutputGuard::end(const Slot& slot, const vm::Image* next) {
 
 void OutputGuard::switch_off(const Slot& slot) {
   if (vm::drives_player(slot.driver)) {
-    ended_player_ = {slot.pin, slot.changed};
+    {
+      const auto lock = kernel_.lock();
+      ended_player_ = {slot.pin, slot.changed};
+    }
     silence_ended_player(kernel_.now());
   } else if (is_on_panel(slot.driver)) {
     board_.panel().show(0);
@@ -181,6 +136,7 @@ void OutputGuard::disown() {
   end_measurements();
   listen(false);
   switch_off(nullptr);
+  traits_ = {};
 }
 
 void OutputGuard::begin_with(Mask halted) {
@@ -192,6 +148,7 @@ void OutputGuard::begin_with(Mask halted) {
 OutputGuard::Mask OutputGuard::own_actuators(const vm::Image& image) {
   const policy::BoardPins& pins = board_.pins();
   limits_ = pins.outputs.data();
+  traits_ = image.traits;
   Mask owned = 0;
   gradual_ = apart_ = 0;
   for (unsigned a = 0; a < image.actuators.size(); ++a) {
@@ -207,7 +164,7 @@ OutputGuard::Mask OutputGuard::own_actuators(const vm::Image& image) {
     }
     if (vm::drives_wheels(actuator.driver) && own_wheels(a, image)) owned |= bit(a);
     if (!vm::drives_pin(actuator.driver) || !policy::can_drive(actuator, pins)) continue;
-    slots_[a] = slot_of(actuator, pins);
+    slots_[a] = slot_of(actuator, pulses_of(a));
     owned |= bit(a);
     if (limits_[slots_[a].limit].rise != 0) gradual_ |= bit(a);
     if (slots_[a].safe == kStays) apart_ |= bit(a);
@@ -218,12 +175,13 @@ OutputGuard::Mask OutputGuard::own_actuators(const vm::Image& image) {
 void OutputGuard::own(const vm::Image& image) {
   switch_off(&image);
   if (boards::kHasPanel) free_panel_pin(image);
+  if (boards::kHasSpi) open_spi(image);
   Mask owned = own_actuators(image);
   own_chips(image);
   own_displays(image);
   owned |= on_chips_;
   apart_ |= on_chips_;
-  let_go_of(measured_by(image));
+  let_go_of(read_by(image));
   listen(std::ranges::any_of(
       image.sensors, [](const vm::Sensor& sensor) { return vm::is_microphone(sensor.driver); }));
   {
@@ -245,11 +203,10 @@ void OutputGuard::make_halted_safe(kernel::Time now) {
 }
 
 // The pins of `actuator` must be outputs of the board.
-OutputGuard::Slot OutputGuard::slot_of(const vm::Actuator& actuator,
-                                       const policy::BoardPins& pins) const {
-  const policy::PinLimit& limit = *policy::limit_of(pins, actuator.pin);
+OutputGuard::Slot OutputGuard::slot_of(const vm::Actuator& actuator, vm::ServoPulses pulses) const {
+  const policy::PinLimit& limit = *policy::limit_of(board_.pins(), actuator.pin);
   const auto pulse = static_cast<std::uint16_t>(board_.pwm_read(actuator.pin));
-  const auto safe = policy::safe_pulse(actuator);
+  const auto safe = policy::safe_pulse(actuator, pulses);
   const auto place = static_cast<std::uint8_t>(&limit - limits_);
   Slot slot{.pin = actuator.pin,
             .other = kNoPin,
@@ -263,7 +220,8 @@ OutputGuard::Slot OutputGuard::slot_of(const vm::Actuator& actuator,
             .driver = actuator.driver};
   if (!vm::has_two_pins(actuator.driver)) return slot;
   slot.other = actuator.bus;
-  slot.other_limit = static_cast<std::uint8_t>(policy::limit_of(pins, actuator.bus) - limits_);
+  slot.other_limit =
+      static_cast<std::uint8_t>(policy::limit_of(board_.pins(), actuator.bus) - limits_);
   const auto back = static_cast<std::uint16_t>(board_.pwm_read(actuator.bus));
   if (back == 0) return slot;
   exchange(slot);
@@ -276,8 +234,8 @@ bool OutputGuard::own_wheels(unsigned actuator, const vm::Image& image) {
   const vm::Actuator& drive = image.actuators[actuator];
   const vm::DriveParameters parameters = vm::drive_of(image.constants.data() + drive.pin);
   if (!policy::can_drive(drive, parameters, board_.pins())) return false;
-  slots_[actuator] = slot_of(vm::motor_of(drive, parameters, vm::Side::left), board_.pins());
-  right_wheel_ = slot_of(vm::motor_of(drive, parameters, vm::Side::right), board_.pins());
+  slots_[actuator] = slot_of(vm::motor_of(drive, parameters, vm::Side::left));
+  right_wheel_ = slot_of(vm::motor_of(drive, parameters, vm::Side::right));
   drive_ = bit(actuator);
   drive_parameters_ = image.constants.data() + drive.pin;
   apart_ |= bit(actuator);
@@ -651,11 +609,6 @@ void OutputGuard::own_told(unsigned actuator, const vm::Actuator& wiring) {
   apart_ |= bit(actuator);
 }
 
-// The device has just been told something.
-bool OutputGuard::needs_time(std::uint16_t told, std::uint16_t gap, kernel::Time now) {
-  return static_cast<std::uint16_t>(now / 1000 - told) < gap;
-}
-
 // Sends the order, unless the device still needs time after the previous one. Sending a picture takes long, so no lock is held
 // meanwhile. That is safe: the safety thread calls this, and nothing that preempts it changes the picture.
 [[gnu::noinline]] void OutputGuard::tell(unsigned actuator, kernel::Time now) {
@@ -684,7 +637,9 @@ void OutputGuard::silence_ended_player(kernel::Time now) {
 
 // If the next program has another use for the panel's pin, the panel's picture goes too: something else is wired there.
 void OutputGuard::free_panel_pin(const vm::Image& next) {
-  if (panel_pin_ == kNoPin || !has_pin(next, panel_pin_)) return;
+  if (panel_pin_ == kNoPin) return;
+  const bool of_bus = policy::uses_spi(next) && policy::is_in(board_.pins().spi_pins, panel_pin_);
+  if (!of_bus && !policy::uses_pin(next, panel_pin_)) return;
   board_.panel().end();
   panel_pin_ = kNoPin;
 }

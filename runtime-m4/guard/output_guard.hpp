@@ -17,6 +17,9 @@
 // The trigger pins of sensors are outputs too: a pulse of some microseconds, for a sensor of the running program. A halt does not
 // prevent it, because it moves nothing and SAFETY reads the result.
 //
+// An SPI bus has its pins while the running program has a part there, and so does each of the parts its select pin: they may be
+// outputs, or inputs, of other programs. A halt does not concern them. The board accepts no image that has another use for them.
+//
 // A pin that can be an output or an analog input is released while the running program has an analog sensor there, and low
 // otherwise. The board accepts no image that both measures and drives such a pin.
 //
@@ -82,6 +85,10 @@ public:
                     kernel::Time now);
   // The parameters of the drive, in the running program's image; null: it has no drive.
   [[nodiscard]] const vm::Value* drive_parameters() const { return drive_parameters_; }
+  // The pulses of an actuator of the running program, a servo, at the ends of its range.
+  [[nodiscard]] vm::ServoPulses pulses_of(unsigned actuator) const {
+    return vm::pulses_of(traits_, actuator);
+  }
   // The picture on the lights (boards::Board::show()), or on the actuator's display or panel; for a strip, its colour.
   void show(unsigned actuator, std::uint32_t picture);
   // The tone of the speaker (boards::Board::sound()).
@@ -166,7 +173,12 @@ private:
   static constexpr std::uint16_t kStays = UINT16_MAX;
   static constexpr std::uint16_t kNoPin = UINT16_MAX;
 
-  using Pins = std::uint64_t;  // bit p: pin p
+  using Pins = std::uint32_t;  // bit p: pin p
+  // Pins that a program reads, and others may drive.
+  struct ReadPins {
+    Pins voltages = 0, levels = 0;
+    Pins all() const { return voltages | levels; }
+  };
 
   void settle(Slot& slot, unsigned actuator, std::uint16_t pulse, kernel::Time now);
   void put(unsigned actuator, kernel::Time now);
@@ -187,14 +199,19 @@ private:
   void say(std::uint16_t player, std::uint16_t sound);
   void free_panel_pin(const vm::Image& next);
   void switch_off(const Slot& slot);
-  static bool needs_time(std::uint16_t told, std::uint16_t gap, kernel::Time now);
+  // `told`: when the device got its last order, in ms.
+  static bool needs_time(std::uint16_t told, std::uint16_t gap, kernel::Time now) {
+    return static_cast<std::uint16_t>(now / 1000 - told) < gap;
+  }
   void silence_ended_player(kernel::Time now);
-  [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, const policy::BoardPins& pins) const;
+  [[nodiscard]] Slot slot_of(const vm::Actuator& actuator, vm::ServoPulses pulses = {}) const;
   static bool drives(const vm::Image& image, const Slot& slot);
-  [[nodiscard]] Pins measured_by(const vm::Image& image) const;
-  void take_back_all_but(Pins measured);
-  void let_go_of(Pins measured);
+  [[nodiscard]] ReadPins read_by(const vm::Image& image) const;
+  void take_back_all_but(const ReadPins& read);
+  void let_go_of(const ReadPins& read);
+  void let_go_of(Pins pins, boards::Reads what);
   void listen(bool on);
+  void open_spi(const vm::Image& image);
   void switch_off(const vm::Image* next);
   void end(const Slot& slot, const vm::Image* next);
   [[nodiscard]] bool own_wheels(unsigned actuator, const vm::Image& image);
@@ -219,7 +236,8 @@ private:
   boards::Board& board_;
   const policy::PinLimit* limits_ = nullptr;
   std::span<const vm::Sensor> sensors_;  // of the running program
-  Pins let_go_ = 0;                      // the program measures them, so nothing drives them
+  std::span<const vm::Trait> traits_;    // likewise
+  ReadPins let_go_;                      // the program reads them, so nothing drives them
   Mask owned_ = 0;
   Mask halted_ = 0;
   Mask free_ = 0;     // owned, and not halted

@@ -152,6 +152,10 @@ public:
   // All threads, by rank.  [any; the span is valid until threads are added or removed]
   std::span<Thread* const> threads() const { return {by_rank_.data(), count_}; }
   Thread::State state(const Thread& thread) const;  // [any]
+  // Is that State::ready? Only of a thread that has been added, and not removed.  [any]
+  [[nodiscard]] bool is_ready(const Thread& thread) const {
+    return ReadySet::contains(thread.ready_position_);
+  }
 
   // A free-running counter of the processor's clock; wraps.  [any]
   std::uint32_t clock() const { return 0 - port::Machine::clock(); }

@@ -26,8 +26,8 @@ struct ThreadSpec {
   // at most port::kMaxUnprivilegedStack bytes.
   bool privileged = true;
   // If not 0, this many bytes at the start of the stack are the thread's data. The thread must be
-  // unprivileged, and can access its stack only, not even what Kernel::grant() gives. The stack then
-  // has port::kSecludedStack bytes and is aligned to that.
+  // unprivileged, and can access its stack only, not even what Kernel::grant() gives. The stack is then
+  // exactly what eighths of one MPU region cover (policy/regions.hpp).
   std::uint16_t data_bytes = 0;
 };
 

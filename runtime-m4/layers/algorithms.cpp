@@ -19,13 +19,20 @@ bool AlgorithmLayer::start(const LoadedProgram& program, Memory& memory, Program
   begun_ = false;
   units_ = memory.take<policy::Part::algorithm_units, Unit>();
   if (units_.empty()) return true;
+  return start_units(memory.board(), threads) && start_server(threads);
+}
+
+bool AlgorithmLayer::start_units(const policy::BoardMemory& board, ProgramThreads& threads) {
+  const vm::Image& image = program_->image;
+  const auto nothing = [](std::size_t, std::uint32_t, std::uint32_t) {};
+  const std::uint32_t lowest = policy::place_algorithms(image, board, nothing);
   auto unit = units_.begin();
-  for (unsigned s = 0; s < program.image.sensors.size(); ++s) {
-    if (!policy::is_algorithm(program.image.sensors[s])) continue;
+  bool good = true;
+  policy::place_algorithms(image, board, [&](std::size_t s, std::uint32_t at, std::uint32_t bytes) {
     unit->sensor = static_cast<std::uint8_t>(s);
-    if (!start_unit(*unit++, threads)) return false;
-  }
-  return start_server(threads);
+    good = good && start_unit(*unit++, threads.algorithm_stack(at - lowest, bytes), threads);
+  });
+  return good;
 }
 
 bool AlgorithmLayer::start_server(ProgramThreads& threads) {
@@ -40,15 +47,20 @@ bool AlgorithmLayer::start_server(ProgramThreads& threads) {
 }
 
 // The kernel paints the stack, but not the data below it.
-bool AlgorithmLayer::start_unit(Unit& unit, ProgramThreads& threads) {
-  static_assert(sizeof(Data) % 8 == 0 &&
-                sizeof(Data) + policy::kModuleStack <= port::kSecludedStack);
+bool AlgorithmLayer::start_unit(Unit& unit, std::span<std::byte> stack, ProgramThreads& threads) {
+  static_assert(port::kArenaScale != 1 ||
+                sizeof(Data) + ROBOSYNC_MOST_BYTES + policy::kModuleStack <=
+                    policy::kAlgorithmStack);
+  static_assert(ROBOSYNC_ROOM == policy::kAlgorithmStack);
   kernel::ThreadSpec spec;
   spec.name = name_of(program_->image, wiring_of(unit).name, "algorithm");
   spec.category = kernel::Category::algorithm;
   spec.privileged = false;
-  spec.data_bytes = sizeof(Data);
-  unit.data = new (threads.next_algorithm_data()) Data;
+  spec.stack = stack;
+  spec.data_bytes =
+      static_cast<std::uint16_t>(sizeof(Data) + algorithms::most_bytes(wiring_of(unit)));
+  std::ranges::fill(stack.first(spec.data_bytes), std::byte{0});
+  unit.data = new (stack.data()) Data;
   fill(unit, *unit.data);
   spec.entry = [](void* data) { run_module(*static_cast<Data*>(data)); };
   spec.argument = unit.data;
@@ -73,7 +85,7 @@ void AlgorithmLayer::fill(Unit& unit, Data& data) const {
 
 void AlgorithmLayer::run_module(Data& data) {
   const robosync_module& module = *data.module;
-  std::byte* const state = data.memory;
+  std::byte* const state = data.memory();
   std::byte* const scratch = state + algorithms::scratch_at(module, data.config);
   const robosync_block block = {data.inputs, data.outputs, data.config};
   while (true) {
@@ -168,7 +180,16 @@ bool AlgorithmLayer::latch_inputs(Unit& unit, kernel::Time now) {
   return true;
 }
 
+// The module may have written anything to where it wants to look.
+void AlgorithmLayer::show_constants(const Unit& unit) {
+  const std::span<const vm::Value> constants =
+      algorithms::constants_of(program_->image, wiring_of(unit));
+  robosync_show(reinterpret_cast<robosync_taught*>(unit.data->memory()), constants.data(),
+                static_cast<std::uint32_t>(constants.size()));
+}
+
 void AlgorithmLayer::release(Unit& unit) {
+  if (algorithms::module_of(wiring_of(unit)).learns != 0) show_constants(unit);
   {
     const auto lock = kernel_.lock();
     unit.run_time = kernel_.run_time(*unit.thread);

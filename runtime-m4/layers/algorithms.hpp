@@ -68,9 +68,9 @@ private:
   // A module's record with its budget.
   enum class Conduct : std::uint8_t { good, over, lowered };
 
-  // At the bottom of a module's stack: its inputs and outputs, then its parameters, its state and its scratch memory. It may
-  // write all of that, so nothing of it is trusted.
-  struct Data {
+  // At the bottom of a module's stack: its inputs and outputs, its parameters, then its state and its scratch memory. It may write
+  // all of that, so nothing of it is trusted.
+  struct alignas(8) Data {
     kernel::Kernel* kernel = nullptr;
     const robosync_module* module = nullptr;
     std::uint32_t period_ms = 0;
@@ -79,7 +79,8 @@ private:
     std::int32_t inputs[ROBOSYNC_MOST_INPUTS] = {};
     std::int32_t outputs[ROBOSYNC_MOST_OUTPUTS] = {};
     std::int32_t config[ROBOSYNC_MOST_PARAMETERS] = {};
-    alignas(8) std::byte memory[ROBOSYNC_MOST_BYTES] = {};
+
+    std::byte* memory() { return reinterpret_cast<std::byte*>(this + 1); }
   };
 
   struct Unit {
@@ -96,7 +97,8 @@ private:
   };
 
   [[nodiscard]] bool start_server(ProgramThreads& threads);
-  [[nodiscard]] bool start_unit(Unit& unit, ProgramThreads& threads);
+  [[nodiscard]] bool start_units(const policy::BoardMemory& board, ProgramThreads& threads);
+  [[nodiscard]] bool start_unit(Unit& unit, std::span<std::byte> stack, ProgramThreads& threads);
   void fill(Unit& unit, Data& data) const;
   static void run_module(Data& data);
   void run();
@@ -107,6 +109,7 @@ private:
   void serve(Unit& unit, kernel::Time now);
   bool latch(Unit& unit, kernel::Time now);
   bool latch_inputs(Unit& unit, kernel::Time now);
+  void show_constants(const Unit& unit);
   void release(Unit& unit);
   void collect(Unit& unit);
   bool is_done(const Unit& unit) const;

@@ -27,29 +27,35 @@ target_sources(robosync_runtime PRIVATE
   layers/safety_region.cpp
   layers/sampler.cpp
   layers/sensor.cpp
+  layers/thresholds.cpp
   layers/trace.cpp
   layers/triggers.cpp
   layers/variables.cpp
   layers/workspace.cpp
   guard/displays.cpp
   guard/output_guard.cpp
+  guard/read_pins.cpp
   safety/rule_key.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp
   drivers/algorithm.cpp
   drivers/axes.cpp
+  drivers/board_part.cpp
   drivers/differential_drive.cpp
   drivers/digital_input.cpp
   drivers/ear.cpp
+  drivers/encoder.cpp
   drivers/hc_sr04.cpp
   drivers/analog_input.cpp
   drivers/hts221.cpp
   drivers/i2c_register.cpp
   drivers/i2c_word.cpp
   drivers/lights.cpp
+  drivers/lis3mdl.cpp
   drivers/lsm303agr.cpp
   drivers/lsm6dsl.cpp
   drivers/max34451.cpp
+  drivers/mcp3008.cpp
   drivers/microphone.cpp
   drivers/motor.cpp
   drivers/mpu6050.cpp
@@ -60,7 +66,9 @@ target_sources(robosync_runtime PRIVATE
   drivers/pca9685_servo.cpp
   drivers/served.cpp
   drivers/servo.cpp
-  drivers/six_axes.cpp
+  drivers/axes_chip.cpp
+  drivers/spectrum.cpp
+  drivers/spi_register.cpp
   drivers/ssd1306.cpp
   drivers/ssd1306_face.cpp
   drivers/tones.cpp
@@ -70,20 +78,20 @@ target_sources(robosync_runtime PRIVATE
   drivers/virtual_sensor.cpp
   drivers/vl53l0x.cpp
   drivers/way.cpp
-  drivers/ws2812_face.cpp drivers/ws2812_strip.cpp)
-# In rsc the drivers of hardware are not time-critical, since a simulated robot has none: small code is worth more there.
+  drivers/ws2812_face.cpp
+  drivers/ws2812_strip.cpp)
+# In rsc small code is worth more than fast code, but for what is compiled with -O2 below and in kernel.cmake.
 if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(
-    drivers/axes.cpp drivers/hts221.cpp drivers/lights.cpp drivers/lsm303agr.cpp drivers/lsm6dsl.cpp drivers/max34451.cpp
-    drivers/microphone.cpp drivers/motor.cpp drivers/mpu6050.cpp drivers/pca9685.cpp drivers/pca9685_servo.cpp drivers/power.cpp
-    drivers/pwm.cpp
-    drivers/served.cpp drivers/servo.cpp drivers/six_axes.cpp drivers/ssd1306.cpp drivers/ssd1306_face.cpp drivers/tones.cpp
-    drivers/virtual_output.cpp drivers/vl53l0x.cpp drivers/ws2812_face.cpp drivers/ws2812_strip.cpp
-    PROPERTIES COMPILE_OPTIONS -Os)
+  target_compile_options(robosync_runtime PRIVATE -Os)
+endif()
+# On the board they are on the way of each sample of a motion sensor, or of a block of sound.
+if(CMAKE_CROSSCOMPILING)
+  set_source_files_properties(drivers/axes.cpp drivers/lsm303agr.cpp drivers/axes_chip.cpp drivers/spectrum.cpp
+                              PROPERTIES COMPILE_OPTIONS -O2)
 endif()
 set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
 # Every reading passes through this, in the step thread. There is only one such thread: its stack has room for it.
-set_source_files_properties(layers/processing.cpp PROPERTIES COMPILE_OPTIONS "-O2")
+set_source_files_properties(layers/processing.cpp layers/thresholds.cpp PROPERTIES COMPILE_OPTIONS "-O2")
 # The path from a reading in its mailbox to the pins in their safe state.
 set_source_files_properties(safety/safety_rules.cpp PROPERTIES COMPILE_OPTIONS "-O2")

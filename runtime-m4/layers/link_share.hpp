@@ -28,7 +28,7 @@ public:
 
   // Between two passes: does the link's thread have work?
   bool is_wanted(const kernel::Kernel& kernel) const {
-    return link_ != nullptr && kernel.state(*link_) == kernel::Thread::State::ready;
+    return link_ != nullptr && kernel.is_ready(*link_);
   }
   Look look(const kernel::Kernel& kernel) const;
   // … and is it due for a turn?

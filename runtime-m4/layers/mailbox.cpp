@@ -59,11 +59,6 @@ void Mailboxes::set_next_expiry(kernel::Time time) {
   expiry_tick_ = kernel_.tick() + (time == kernel::kForever ? INT32_MAX : ticks);
 }
 
-ChannelMask Mailboxes::take_announced() {
-  const auto lock = kernel_.lock();
-  return std::exchange(announced_, 0);
-}
-
 // The lock covers one channel at a time. Other threads may post and forget in between, and the safety thread may look:
 // until all channels are done, nothing counts as fresh.
 ChannelMask Mailboxes::expire_old(std::span<const vm::Channel> channels, ChannelMask fresh,

@@ -31,7 +31,10 @@ public:
 
   // --- for the step thread ---
   bool has_announced() const { return announced_ != 0; }
-  ChannelMask take_announced();
+  [[gnu::always_inline]] ChannelMask take_announced() {
+    const auto lock = kernel_.lock();
+    return std::exchange(announced_, 0);
+  }
   vm::Value value(unsigned channel) const { return boxes_[channel].value; }
   // For the safety thread, which does not wait for expire(). No thread that posts can preempt it, so it needs no lock.
   // All known values are good at this kernel::Kernel::tick(): each value() is its fresh_value(). Also false if that is
@@ -53,9 +56,9 @@ public:
   }
   // The channels, except `fresh` ones, whose last sample is older than channel.stale_ms or that were
   // forgotten; each is returned once. They are unknown from now on.
-  [[nodiscard]] ChannelMask take_expired(std::span<const vm::Channel> channels, ChannelMask fresh,
+  [[nodiscard]] ChannelMask take_expired(const vm::Image& image, ChannelMask fresh,
                                          kernel::Time now) {
-    return now < next_expiry_ ? 0 : expire_old(channels, fresh, now);
+    return now < next_expiry_ ? 0 : expire_old(image.channels, fresh, now);
   }
   // No channel expires before this; kForever: none ever does. Readings that arrive later put expiry off,
   // so this may be too early.

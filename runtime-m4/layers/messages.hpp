@@ -45,6 +45,14 @@ constexpr bool has(Mask mask, unsigned index) {
   return (mask >> index & 1) != 0;
 }
 
+// The lowest bit of a mask that is not 0. The library would call a function for 64 bits.
+constexpr unsigned lowest_bit(BehaviorMask mask) {
+  const auto lower = static_cast<std::uint32_t>(mask);
+  if (lower != 0) [[likely]]
+    return static_cast<unsigned>(std::countr_zero(lower));
+  return 32 + static_cast<unsigned>(std::countr_zero(static_cast<std::uint32_t>(mask >> 32)));
+}
+
 // Calls take(bit) for each bit of a 32-bit mask, from the lowest up. The loop tests at its end: where the compiler saves
 // flash, that takes two instructions less per iteration.
 template <class Take>

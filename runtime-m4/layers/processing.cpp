@@ -39,6 +39,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, const Beginnings& begi
   layers_.variables.start(program.image, snapshot_.values_.subspan(program.image.channels.size()),
                           beginnings, memory);
   report_beginnings();
+  thresholds_.start(program.image, memory);
   checks_.start(program.image, memory);
   adaptation_.start(memory);
   concerned_.start(memory.take<policy::Part::concerned, RuleSet::Word>());
@@ -89,8 +90,8 @@ void ProcessingLayer::run() {
 
 void ProcessingLayer::pass() {
   layers_.sensors.deliver_due();
-  Stamp stamp;
-  const std::uint32_t now = read_clock(stamp.time);
+  kernel::Time time = 0;
+  const std::uint32_t now = read_clock(time);
   adaptation_.turn(*program_, layers_.threads, trace_, now);
   // Responses that finish in another way do so at the end of a step.
   if (const ActuatorMask idle = layers_.control.take_idle(); idle != 0) finish_done(idle);
@@ -99,7 +100,9 @@ void ProcessingLayer::pass() {
   layers_.triggers.settle(now);
   const bool lost_or_first = (lost_behaviors_ | unstarted_) != 0;
   const bool anyway = lost_or_first || halted != 0 || is_due(now);
-  if (!latch(stamp, now, anyway)) return;
+  if (!latch(time, now, anyway)) return;
+  set_due_ = now + 1;
+  if (!anyway && nothing_follows(now)) return;
   woken_ = 0;
   // The sensors have rung for their own.
   if (variables_of(changed_) != 0) layers_.alarm.ring(inputs(0, variables_of(changed_)));
@@ -117,6 +120,13 @@ std::uint32_t ProcessingLayer::read_clock(kernel::Time& time) const {
   const auto still = kernel_.lock();
   time = kernel_.time() - trace_.activated_at();
   return trace_.milliseconds();
+}
+
+// Of a step in which something was latched: no rule and no response can do anything in it.
+bool ProcessingLayer::nothing_follows(std::uint32_t now) const {
+  const std::uint32_t wake = layers_.triggers.next_wake();
+  return changed_ == 0 && layers_.triggers.active().empty() && layers_.arbiter.running().empty() &&
+         (wake == kNever || !reached(wake, now));
 }
 
 // Announced readings make a step anyway: then there is no need to look for what is due.
@@ -148,30 +158,46 @@ void ProcessingLayer::finish_if_done(unsigned rule) {
 // --- latch ---
 
 // Copies what is new into the snapshot. A step begins if there is a reading, or `anyway`.
-bool ProcessingLayer::latch(Stamp& stamp, std::uint32_t now, bool anyway) {
+bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway) {
   const ChannelMask announced = layers_.mailboxes.take_announced();
-  const ChannelMask expired = layers_.mailboxes.take_expired(program_->image.channels, announced,
-                                                             stamp.time + trace_.activated_at());
+  const ChannelMask expired =
+      layers_.mailboxes.take_expired(program_->image, announced, time + trace_.activated_at());
   if (!anyway && (announced | expired) == 0) return false;
-  stamp.step = trace_.step().step + 1;
+  const Stamp stamp{.time = time, .step = trace_.step().step + 1};
   trace_.begin_step(stamp);
   snapshot_.milliseconds_ = now;
-  latch_channels(announced, expired, stamp);
-  changed_ = inputs(announced | expired, latch_variables(stamp));
+  const ChannelMask news = latch_channels(announced, expired, stamp);
+  changed_ = inputs(news, latch_variables(stamp));
   return true;
 }
 
-void ProcessingLayer::latch_channels(ChannelMask announced, ChannelMask expired,
-                                     const Stamp& stamp) {
+// Returns those whose new values make a difference to rules.
+ChannelMask ProcessingLayer::latch_channels(ChannelMask announced, ChannelMask expired,
+                                            const Stamp& stamp) {
+  ChannelMask news = 0;
   each_bit(announced | expired, [&](unsigned c) {
-    if (has(expired, c)) {
-      snapshot_.values_[c] = vm::kUnknown;
-      trace_.emit(EventKind::stale, stamp, c);
-    } else {
-      snapshot_.values_[c] = layers_.mailboxes.value(c);
-      trace_.emit(EventKind::input, stamp, c, 0, snapshot_.values_[c]);
-    }
+    const vm::Value before = snapshot_.values_[c];
+    vm::Value value = layers_.mailboxes.value(c);
+    if (has(expired, c)) [[unlikely]]
+      value = vm::kUnknown;
+    snapshot_.values_[c] = value;
+    if (is_news(c, before, value)) news |= bit<ChannelMask>(c);
+    if (trace_.listening()) [[unlikely]]
+      report_input(c, has(expired, c), stamp);
   });
+  return news;
+}
+
+void ProcessingLayer::report_input(unsigned channel, bool expired, const Stamp& stamp) {
+  if (expired) return trace_.emit(EventKind::stale, stamp, channel);
+  trace_.emit(EventKind::input, stamp, channel, 0, snapshot_.values_[channel]);
+}
+
+// A rule whose last evaluation had an event is evaluated again when any input of its behaviour changes.
+bool ProcessingLayer::is_news(unsigned channel, vm::Value before, vm::Value value) const {
+  if constexpr (kernel::kAssertions)
+    if (saves_no_work_) return true;
+  return thresholds_.separate(channel, before, value) || !layers_.triggers.eventful().empty();
 }
 
 VariableMask ProcessingLayer::latch_variables(const Stamp& stamp) {
@@ -304,6 +330,8 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
 //   in each of these steps, as long as there is one.
 // * An input that only a rule's responses read or set concerns it too: it stirs the behaviour,
 //   and responses that wait for a condition check it again (goes_on()).
+// * A channel counts as changed only if a rule can tell its new value from the one before
+//   (thresholds.hpp).
 // * The first time, all rules of a behaviour are evaluated: some conditions have no inputs, and some
 //   are known whatever their inputs are.
 //
@@ -325,7 +353,7 @@ void ProcessingLayer::find_concerned() {
 void ProcessingLayer::touch() {
   untouched_inputs_ = 0;
   for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
-    const auto behavior = static_cast<unsigned>(std::countr_zero(left));
+    const unsigned behavior = lowest_bit(left);
     if (behavior >= program_->image.behaviors.size()) break;
     if (stirred(behavior)) {
       concern_all(behavior);
@@ -364,7 +392,6 @@ void ProcessingLayer::step() {
       rule = next_at_work(rules.end);
     }
   }
-  set_due_ = snapshot_.milliseconds() + 1;
   layers_.control.commit();
   if (!layers_.arbiter.running().empty()) finish_done(0);
   layers_.arbiter.end_step();
@@ -380,7 +407,7 @@ unsigned ProcessingLayer::next_at_work(unsigned rule) const {
 // such rule after it. A reading mostly finds a behaviour in this case, since most of its rules are about something else.
 bool ProcessingLayer::has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const {
   if constexpr (kernel::kAssertions)
-    if (takes_whole_turns_) return false;
+    if (saves_no_work_) return false;
   return next >= rules.end && concerned_.has(rule);
 }
 

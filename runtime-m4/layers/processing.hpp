@@ -63,6 +63,7 @@
 #include "runtime-m4/layers/mailbox.hpp"
 #include "runtime-m4/layers/program_threads.hpp"
 #include "runtime-m4/layers/sensor.hpp"
+#include "runtime-m4/layers/thresholds.hpp"
 #include "runtime-m4/layers/trace.hpp"
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
@@ -133,9 +134,12 @@ private:
   [[gnu::noinline]] void finish_done(ActuatorMask idle);
   void finish_if_done(unsigned rule);
   bool is_due(std::uint32_t now) const;
+  bool nothing_follows(std::uint32_t now) const;
   std::uint32_t read_clock(kernel::Time& time) const;
-  bool latch(Stamp& stamp, std::uint32_t now, bool anyway);
-  void latch_channels(ChannelMask announced, ChannelMask expired, const Stamp& stamp);
+  bool latch(kernel::Time time, std::uint32_t now, bool anyway);
+  ChannelMask latch_channels(ChannelMask announced, ChannelMask expired, const Stamp& stamp);
+  void report_input(unsigned channel, bool expired, const Stamp& stamp);
+  bool is_news(unsigned channel, vm::Value before, vm::Value value) const;
   VariableMask latch_variables(const Stamp& stamp);
   [[gnu::cold]] void report_beginnings();
   void report_set(unsigned variable, const Stamp& stamp);
@@ -195,8 +199,9 @@ private:
   Checks checks_;
   Adaptation adaptation_;
   Snapshot snapshot_;
+  Thresholds thresholds_;
   RuleSet concerned_;                // evaluated in this step
-  InputMask changed_ = 0;            // in this step
+  InputMask changed_ = 0;            // in this step, so that it makes a difference to rules
   BehaviorMask woken_ = 0;           // with a rule that is due in this step
   BehaviorMask untouched_ = 0;       // none of their rules was ever evaluated …
   InputMask untouched_inputs_ = 0;   // … and what they read
@@ -207,7 +212,7 @@ private:
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
   LinkShare link_share_;
-  bool takes_whole_turns_ = false;  // in builds for tests: see has_sole_turn()
+  bool saves_no_work_ = false;  // in builds for tests: see is_news() and has_sole_turn()
 };
 
 }  // namespace robosync::layers

@@ -7,12 +7,11 @@ using kernel::Category;
 using policy::Part;
 
 // The stacks of unprivileged threads come first: the end of the closed parts is aligned as they
-// require, and the stacks of algorithms are at the very end, which is aligned to their size.
+// require, and the stacks of algorithms are at the very end.
 void ProgramThreads::take_stacks(Memory& memory) {
   static_assert(policy::kStackUnit % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack % port::kUnprivilegedStackAlignment == 0);
   static_assert(policy::kBehaviorStack <= port::kMaxUnprivilegedStack);
-  static_assert(policy::kAlgorithmStack == port::kSecludedStack);
   static_assert((policy::kSensorStack | policy::kControlStack | policy::kStepStack) %
                     policy::kStackUnit ==
                 0);
@@ -39,8 +38,10 @@ ProgramThreads::Places& ProgramThreads::places(Category category) {
 kernel::Thread* ProgramThreads::start(kernel::ThreadSpec spec, unsigned index) {
   Places& mine = places(spec.category);
   if (mine.used == mine.members.size()) return nullptr;
-  const std::size_t bytes = mine.stacks.size() / mine.members.size();
-  spec.stack = mine.stacks.subspan(mine.used * bytes, bytes);
+  if (spec.stack.empty()) {
+    const std::size_t bytes = mine.stacks.size() / mine.members.size();
+    spec.stack = mine.stacks.subspan(mine.used * bytes, bytes);
+  }
   Member& member = mine.members[mine.used];
   if (!kernel_.add(member.thread, spec)) return nullptr;
   ++mine.used;

@@ -29,14 +29,15 @@ public:
   // Takes the places for the program of `memory`. There must be no program threads.
   void take_stacks(Memory& memory);
   void take_members(Memory& memory);
-  // Starts a thread in a free place of its category and sets its stack. Returns null, and changes nothing,
-  // if there is no place; a program that memory is laid out for never causes that.
+  // Starts a thread in a free place of its category and sets its stack, unless it has one. Returns null, and changes
+  // nothing, if there is no place; a program that memory is laid out for never causes that.
   [[nodiscard]] kernel::Thread* start(kernel::ThreadSpec spec, unsigned index);
   // Like start(), with the caller's control block. dismiss() removes this thread as well.
   [[nodiscard]] bool start_step_thread(kernel::Thread& thread, kernel::ThreadSpec spec);
-  // Where the data of the next algorithm's thread to be started begins, or null.
-  [[nodiscard]] std::byte* next_algorithm_data() const {
-    return algorithms_.stacks.data() + algorithms_.used * policy::kAlgorithmStack;
+  // The stack of an algorithm's thread: so many bytes, and so far above the lowest one.
+  [[nodiscard]] std::span<std::byte> algorithm_stack(std::uint32_t above,
+                                                     std::uint32_t bytes) const {
+    return algorithms_.stacks.subspan(above, bytes);
   }
   // Removes all threads from the kernel. Not to be called from one of them.
   void dismiss();

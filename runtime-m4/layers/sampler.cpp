@@ -27,6 +27,8 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
   const vm::Sensor& sensor = image.sensors[wiring.sensor];
   if (boards::kHasMicrophone && vm::is_microphone(sensor.driver))
     return microphone_.sample(board_, channel == sensor.first_channel, wiring, value);
+  if (sensor.driver == vm::DriverId::encoder) [[unlikely]]
+    return sample_encoder(image, channel, value);
   std::int32_t raw = 0;
   {
     const kernel::MutexGuard mine(kernel_, buses_);
@@ -36,10 +38,24 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
   return true;
 }
 
+// It is on no bus. Not inlined: most sensors are no encoders.
+[[gnu::noinline]] bool DriverSampler::sample_encoder(const vm::Image& image, std::uint8_t channel,
+                                                     vm::Value& value) {
+  const vm::Channel& wiring = image.channels[channel];
+  const vm::Sensor& sensor = image.sensors[wiring.sensor];
+  std::int32_t raw = 0;
+  if (!encoders_.sample(board_, sensor, vm::encoder_number(image, wiring.sensor),
+                        channel == sensor.first_channel, wiring.input, kernel_.now(), raw))
+    return false;
+  value = scaled(raw, wiring);
+  return true;
+}
+
 kernel::Duration DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
   if (vm::is_by_echo(sensor.driver)) return kernel::milliseconds(policy::kEchoMs);
   if (vm::is_served(sensor.driver)) return 0;  // its thread waits for the bus itself
-  return board_.i2c_asks_ahead() && vm::is_on_i2c(sensor.driver) ? kernel::kTick : 0;
+  const bool on_bus = vm::is_on_i2c(sensor.driver) || vm::is_on_spi(sensor.driver);
+  return on_bus && board_.buses_ask_ahead() ? kernel::kTick : 0;
 }
 
 drivers::ServedBus DriverSampler::bus_of(const vm::Sensor& sensor) {
@@ -69,9 +85,9 @@ void DriverSampler::ask(const vm::Image& image, std::uint8_t channel) {
   }
   std::int32_t raw = 0;
   const kernel::MutexGuard mine(kernel_, buses_);
-  board_.i2c_ask(true);
+  board_.ask_buses(true);
   static_cast<void>(drivers::driver(sensor.driver).read(board_, sensor, wiring, raw));
-  board_.i2c_ask(false);
+  board_.ask_buses(false);
 }
 
 }  // namespace robosync::layers

@@ -5,6 +5,7 @@
 
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/features.hpp"
+#include "runtime-m4/drivers/encoder.hpp"
 #include "runtime-m4/drivers/microphone.hpp"
 #include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
@@ -44,12 +45,13 @@ public:
   bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) override;
   kernel::Duration asks_ahead(const vm::Sensor& sensor) const override;
   void ask(const vm::Image& image, std::uint8_t channel) override;
-  bool awaits() const override { return board_.i2c_busy(); }
+  bool awaits() const override { return board_.buses_busy(); }
   bool serve_chip(const vm::Image& image, unsigned sensor) override;
   void lose_chip(unsigned sensor) override { outputs_.lose_chip(sensor); }
 
 private:
   drivers::ServedBus bus_of(const vm::Sensor& sensor);
+  bool sample_encoder(const vm::Image& image, std::uint8_t channel, vm::Value& value);
   bool serve_display(const vm::Image& image, unsigned sensor);
 
   kernel::Kernel& kernel_;
@@ -61,6 +63,7 @@ private:
   };
   [[no_unique_address]] std::conditional_t<boards::kHasMicrophone, drivers::Microphone, None>
       microphone_;
+  drivers::Encoders encoders_;
 };
 
 // raw * scale_num / scale_den + offset, rounded half away from zero, saturating.

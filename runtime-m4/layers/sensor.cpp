@@ -285,7 +285,17 @@ link::FeedError SensorLayer::check(const link::Feed& feed) const {
   return link::FeedError::none;
 }
 
+// The thread that serves the feeds outranks the caller, and would publish the reading before feed() returns. So, where no other
+// reading comes first, the caller can do it.
 link::FeedResult SensorLayer::feed(const link::Feed& feed) {
+  if (feed.at_us != 0 || are_fed() || awaited_ != 0) return enqueue(feed);
+  const link::FeedResult result{check(feed), static_cast<std::uint8_t>(feeds_.free_places())};
+  if (result.error == link::FeedError::none && feed.value != vm::kUnknown)
+    announce_all(publish(static_cast<std::uint8_t>(feed.channel), feed.value, kernel_.now()));
+  return result;
+}
+
+link::FeedResult SensorLayer::enqueue(const link::Feed& feed) {
   link::FeedResult result{check(feed), 0};
   {
     const auto lock = kernel_.lock();

@@ -50,8 +50,10 @@ public:
   // Program time begins at activated_at(), which was expected to be `zero`.
   void begin(kernel::Time zero);
 
-  // A reading for a fed channel of the running program.  [link thread]
+  // A reading for a fed channel of the running program. It is published at its time: now, if feed.at_us is 0 or over.  [thread]
   link::FeedResult feed(const link::Feed& feed);
+  // … by a thread of the program, also if it is for now.  [any]
+  link::FeedResult enqueue(const link::Feed& feed);
   // The contact with the devices that are measured.  [link thread]
   void fill_devices(link::Devices& devices) const;
 

@@ -3,6 +3,7 @@
 // Cortex-M4 instructions, except for microseconds (_us). A cost that is not declared does not compile.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "runtime-m4/policy/threads.hpp"
@@ -45,7 +46,7 @@ struct ActuatorCosts {
   bool at_once;  // a command may end as soon as it has begun
 };
 
-// The cost of one sample of one channel, of all channels of a microphone; 0 for an actuator's driver.
+// The cost of one sample of one channel, of what a microphone hears besides the spectrum; 0 for an actuator's driver.
 constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board) {
   const auto fed = [] { return std::uint32_t{0}; };
   const auto computed = [] { return std::uint32_t{0}; };
@@ -53,10 +54,13 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
     return transfers * board.i2c_transfer + bytes * board.i2c_byte;
   };
   const auto i2c_once = i2c;
+  const auto spi = [&](std::uint32_t bytes) { return board.spi_transfer + bytes * board.spi_byte; };
   const auto pin = [&] { return std::uint32_t{board.input}; };
   const auto echo = [&] { return std::uint32_t{board.echo}; };
   const auto adc = [&] { return std::uint32_t{board.analog}; };
   const auto sound = [&] { return std::uint32_t{board.sound}; };
+  const auto part = [&] { return std::uint32_t{board.part}; };
+  const auto edges = [&] { return std::uint32_t{board.encoder}; };
   switch (driver) {
 #define SENSOR_DRIVER(name, sample, doc) \
   case vm::DriverId::name:               \
@@ -74,26 +78,36 @@ constexpr std::uint32_t sample_cost(vm::DriverId driver, const BoardCosts& board
 }
 
 // … and of all its channels.
-constexpr std::uint32_t sample_cost(const vm::Sensor& sensor, const BoardCosts& board) {
-  const bool once = vm::is_microphone(sensor.driver);
-  return sample_cost(sensor.driver, board) * (once ? 1U : sensor.channel_count);
+inline std::uint32_t sample_cost(const vm::Image& image, const vm::Sensor& sensor,
+                                 const BoardCosts& board) {
+  if (!vm::is_microphone(sensor.driver))
+    return sample_cost(sensor.driver, board) * sensor.channel_count;
+  const auto channels = image.channels.subspan(sensor.first_channel, sensor.channel_count);
+  const auto is_of_spectrum = [](const vm::Channel& channel) {
+    return channel.input >= vm::kFirstOfSpectrum;
+  };
+  return (std::ranges::all_of(channels, is_of_spectrum) ? 0U : sample_cost(sensor.driver, board)) +
+         (std::ranges::any_of(channels, is_of_spectrum) ? std::uint32_t{board.spectrum} : 0U);
 }
 
 // The cost of requesting the transfers of one sample ahead.
 constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
   BoardCosts asking = board;
   asking.i2c_transfer = board.i2c_ask;
-  asking.i2c_byte = 0;
-  return vm::is_on_i2c(driver) ? sample_cost(driver, asking) : 0;
+  asking.spi_transfer = board.spi_ask;
+  asking.i2c_byte = asking.spi_byte = 0;
+  return vm::is_on_i2c(driver) || vm::is_on_spi(driver) ? sample_cost(driver, asking) : 0;
 }
 
 // How long the transfers of one sample occupy their bus, in microseconds, if the bus works on its own; else 0. For a served
 // device it is one transfer: the next one is requested when that is over.
 constexpr std::uint32_t bus_us(const vm::Sensor& sensor, const BoardCosts& board) {
-  if (!vm::is_on_i2c(sensor.driver)) return 0;
+  if (!vm::is_on_i2c(sensor.driver) && !vm::is_on_spi(sensor.driver)) return 0;
   BoardCosts times = board;
   times.i2c_transfer = board.i2c_transfer_us;
   times.i2c_byte = board.i2c_byte_us;
+  times.spi_transfer = board.spi_transfer_us;
+  times.spi_byte = board.spi_byte_us;
   const bool once = vm::is_asked_once(sensor.driver) || vm::is_served(sensor.driver);
   return sample_cost(sensor.driver, times) * (once ? 1 : sensor.channel_count);
 }
@@ -133,9 +147,15 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   return {};
 }
 
-// … of an actuator of `image`. With a limit of acceleration each call may have to compute a ramp.
+// … of an actuator of `image`, with its limit of acceleration if it has one.
 constexpr ActuatorCosts actuator_costs(const vm::Image& image, std::size_t actuator) {
   ActuatorCosts costs = actuator_costs(image.actuators[actuator].driver);
+  if (vm::is_servo(image.actuators[actuator].driver)) {  // it looks for its pulses among the traits
+    const auto look = static_cast<std::uint32_t>(costs::kTraitSeen * image.traits.size());
+    costs.start += look;
+    costs.advance += look;
+    costs.release += look;
+  }
   if (image.acceleration_of(actuator) == 0) return costs;
   costs.start += costs::kRampBegins;
   costs.advance += costs::kRampBegins;

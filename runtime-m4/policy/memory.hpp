@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime-m4/policy/concern.hpp"
 #include "runtime-m4/policy/regions.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
@@ -42,7 +43,8 @@ inline constexpr std::uint32_t kSensorStack = 576;
 inline constexpr std::uint32_t kStepStack = 704;
 inline constexpr std::uint32_t kBehaviorStack = 320;  // no guard
 inline constexpr std::uint32_t kControlStack = 512;
-// An algorithm has its own region, for its module's data and stack. At least kModuleStack bytes of it are stack.
+// An algorithm has its own region, for its module's data and stack, and more if its record says so. At least kModuleStack bytes of it
+// are stack.
 inline constexpr std::uint32_t kAlgorithmStack = 1024;
 inline constexpr std::uint32_t kModuleStack = 768;
 inline constexpr std::uint32_t kStackUnit = 64;  // of unprivileged stacks
@@ -79,6 +81,7 @@ enum class Count : std::uint32_t {
   sensors,
   sensor_threads,
   algorithms,
+  algorithm_bytes,  // of their regions, and of what lies between them
   channels,
   feeds,
   inputs,
@@ -99,6 +102,7 @@ enum class Count : std::uint32_t {
   watching_rules,  // all rules if one is a WATCH, otherwise none
   delaying_rules,  // all rules if one has delays, otherwise none
   delays,
+  comparisons,
   set_words,
   reader_words,
   actuators,
@@ -193,6 +197,7 @@ inline void count_behaviors(const vm::Image& image, Counts& counts) {
     counts[Count::cells] += behavior.cells;
   for (const vm::Timer& timer : image.timers)
     counts[Count::timer_words] += vm::timer_words(timer);
+  each_comparison(image, [&](unsigned, unsigned) { ++counts[Count::comparisons]; });
   if (!image.has_safety()) return;
   counts[Count::behavior_threads] -= 1;
   counts[Count::safety_cells] = image.behaviors[vm::kSafetyBehavior].cells;
@@ -202,6 +207,21 @@ inline void count_behaviors(const vm::Image& image, Counts& counts) {
   counts[Count::tripped_words] = counts[Count::set_words];
   counts[Count::cells] -= counts[Count::safety_cells];
   counts[Count::timer_words] -= counts[Count::safety_timer_words];
+}
+
+// The regions of the algorithms lie at the arena's end, the first one highest, each where eighths of one region of the MPU cover
+// exactly it. Calls place(sensor, address, bytes) for each; returns the address of the lowest.
+template <class Place>
+std::uint32_t place_algorithms(const vm::Image& image, const BoardMemory& board, Place place) {
+  std::uint32_t end = board.arena_begin + board.arena_bytes;
+  for (std::size_t s = 0; s < image.sensors.size(); ++s) {
+    if (!is_algorithm(image.sensors[s])) continue;
+    const regions::Seat seat =
+        regions::highest_seat(end, kAlgorithmStack * (1U + image.sensors[s].room));
+    place(s, seat.begin, seat.bytes);
+    end = seat.begin;
+  }
+  return end;
 }
 
 inline void count(const vm::Image& image, Counts& counts) {
@@ -305,6 +325,9 @@ inline std::uint32_t end_of_cover(const BoardMemory& board, const Needs& needs) 
 inline void count_needs(const vm::Image& image, const BoardMemory& board, Needs& needs) {
   needs = {};
   count(image, needs.counts);
+  needs.counts[Count::algorithm_bytes] =
+      board.arena_begin + board.arena_bytes -
+      place_algorithms(image, board, [](std::size_t, std::uint32_t, std::uint32_t) {});
   std::uint32_t writable = 0;
   for (std::size_t p = 0; p < kParts.size(); ++p) {
     const std::uint32_t bytes = bytes_of(static_cast<Part>(p), needs.counts);

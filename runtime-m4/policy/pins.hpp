@@ -20,6 +20,9 @@ struct PinLimit {
   std::uint16_t rise;  // µs by which the pulse may change per millisecond; 0: no limit
 };
 
+// An output that is also an input, of either kind, is a pin below this.
+inline constexpr std::uint16_t kMostShared = 32;
+
 struct PinRange {
   std::uint16_t first, last;  // both included
 };
@@ -29,21 +32,27 @@ struct I2cPlace {
   std::uint8_t bus, address;
 };
 
-// From stdlib/boards/NAME.json. A pin that is not in `outputs` is no output, and likewise for inputs. No pin of a board is both,
-// whatever the image. An analog input may also be an output: then it is an output, and low, unless the running program has an
-// analog sensor there (guard/output_guard.hpp).
+// From stdlib/boards/NAME.json. A pin that is not in `outputs` is no output, and likewise for inputs. A pin that is both is an
+// output, and low, unless the running program has a sensor there (guard/output_guard.hpp); then nothing drives it.
 struct BoardPins {
   std::span<const PinLimit> outputs;
   std::span<const PinRange> inputs;
+  std::span<const PinRange> echoes =
+      {};  // those of them whose edges can be timed and counted, which are no outputs
   std::span<const PinRange> analog;
-  // Pins for the active-low enable inputs of chips with their own outputs. They are high from start-up, and whenever those
-  // outputs must be off. They have no other use.
+  // Pins for the active-low enable inputs of chips with their own outputs. They are high from start-up, and whenever those outputs
+  // must be off. Their only other use is to select a part on SPI.
   std::span<const PinRange> enables;
   // Outputs that can send a panel of lights its picture.
   std::span<const PinRange> panels = {};
   std::uint8_t i2c_buses = 0;
   std::span<const I2cPlace> reserved = {};  // addresses of the board's own parts, such as the store
   std::uint8_t serial_lines = 0;            // for players; the first is vm::kFirstPlayerLine
+  std::uint8_t spi_buses = 0;
+  std::span<const PinRange> spi_pins = {};  // that these have while a program has a part there
+  std::span<const PinRange> selects =
+      {};  // for the select inputs of parts: some of enables and outputs
+  std::uint16_t player_pin = UINT16_MAX;  // of the first serial line, if it is one of spi_pins
 };
 
 // Null if the pin is no output.
@@ -77,6 +86,10 @@ constexpr bool is_enable(const BoardPins& board, std::uint16_t pin) {
   return is_in(board.enables, pin);
 }
 
+constexpr bool is_select(const BoardPins& board, std::uint16_t pin) {
+  return is_in(board.selects, pin);
+}
+
 constexpr bool is_for_panel(const BoardPins& board, std::uint16_t pin) {
   return is_in(board.panels, pin);
 }
@@ -102,10 +115,19 @@ constexpr vm::Refusal judge(const vm::Sensor& sensor, const BoardPins& board) {
       return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
     case vm::Bus::echo:
       if (!can_trigger(sensor.bus, board)) return vm::Refusal::no_pin;
-      return is_input(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+      return is_in(board.echoes, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+    case vm::Bus::edges:
+      return is_in(board.echoes, sensor.address) &&
+                     (!vm::has_second_input(sensor) || is_input(board, sensor.bus))
+                 ? vm::Refusal::none
+                 : vm::Refusal::no_input;
     case vm::Bus::adc:
       return is_analog(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_input;
+    case vm::Bus::spi:
+      if (sensor.bus >= board.spi_buses) return vm::Refusal::no_bus;
+      return is_select(board, sensor.address) ? vm::Refusal::none : vm::Refusal::no_pin;
     case vm::Bus::sound:  // without one, the board has no driver for it
+    case vm::Bus::part:
     case vm::Bus::nothing:
       break;
   }
@@ -131,6 +153,37 @@ constexpr bool can_drive(const vm::Actuator& drive, const vm::DriveParameters& p
   return true;
 }
 
+inline bool uses_spi(const vm::Image& image) {
+  for (const vm::Sensor& sensor : image.sensors)
+    if (vm::is_on_spi(sensor.driver)) return true;
+  return false;
+}
+
+// Is the pin an output of an actuator or a sensor, or read by one? A panel's is not counted.
+[[gnu::noinline]] inline bool uses_pin(const vm::Image& image, std::uint16_t pin) {
+  for (const vm::Sensor& sensor : image.sensors)
+    if (((vm::is_by_echo(sensor.driver) || vm::has_second_input(sensor)) && sensor.bus == pin) ||
+        ((vm::reads_pin(sensor.driver) || vm::is_on_spi(sensor.driver)) && sensor.address == pin))
+      return true;
+  return vm::any_wired(image, [&](const vm::Actuator& actuator) {
+    return vm::drives_pin(actuator.driver) &&
+           (actuator.pin == pin || (vm::has_two_pins(actuator.driver) && actuator.bus == pin));
+  });
+}
+
+// A bus with a part has its pins for itself.
+inline bool shares_spi_pin(const vm::Image& image, const BoardPins& board) {
+  if (!uses_spi(image)) return false;
+  for (const PinRange& bus : board.spi_pins)
+    for (std::uint32_t pin = bus.first; pin <= bus.last; ++pin)
+      if (uses_pin(image, static_cast<std::uint16_t>(pin))) return true;
+  for (const vm::Actuator& actuator : image.actuators)
+    if ((vm::drives_panel(actuator.driver) && is_in(board.spi_pins, actuator.pin)) ||
+        (vm::drives_player(actuator.driver) && is_in(board.spi_pins, board.player_pin)))
+      return true;
+  return false;
+}
+
 inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
   for (std::size_t s = 0; s < image.sensors.size(); ++s) {
     const vm::Refusal refusal = judge(image.sensors[s], board);
@@ -149,6 +202,7 @@ inline vm::Verdict judge(const vm::Image& image, const BoardPins& board) {
     if (vm::drives_panel(actuator.driver) && !is_for_panel(board, actuator.pin))
       return {vm::Refusal::no_pin, vm::Section::actuators, static_cast<std::uint16_t>(a)};
   }
+  if (shares_spi_pin(image, board)) return {vm::Refusal::shared_pin, vm::Section::sensors, 0};
   return {};
 }
 

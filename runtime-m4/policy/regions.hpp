@@ -95,4 +95,24 @@ constexpr Region cover(std::uint32_t begin, std::uint32_t end) {
   return region(base, bits, (2U << last) - (1U << first));
 }
 
+// The highest place below `end` at which eighths of one region cover exactly so many bytes, or a few more: an address, and the bytes.
+struct Seat {
+  std::uint32_t begin;
+  std::uint32_t bytes;
+};
+constexpr Seat highest_seat(std::uint32_t end, std::uint32_t bytes) {
+  for (unsigned bits = kSmallest; bits < kLargest; ++bits) {
+    const std::uint32_t unit = (1U << bits) / kEighths, top = end & ~(unit - 1);
+    const std::uint32_t taken = (bytes + unit - 1) & ~(unit - 1), begin = top - taken;
+    if (begin >> bits == (top - 1) >> bits) return {begin, taken};
+  }
+  return {end - bytes, bytes};
+}
+
+// Whether eighths of one region can cover exactly these bytes: cover() is it then.
+constexpr bool fits_region(std::uint32_t begin, std::uint32_t bytes) {
+  const unsigned bits = cover_bits(begin, begin + bytes);
+  return bits < kLargest && ((begin | bytes) & ((1U << bits) / kEighths - 1)) == 0;
+}
+
 }  // namespace robosync::policy::regions

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "vm/drivers.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::policy {
@@ -39,6 +40,13 @@ inline constexpr std::uint32_t kBusWindowUs = (1 + kBusTicks) * 1000 - 100;
 
 // From the trigger pulse of an echo sensor to its sample. If there is no echo within 38 ms, none comes.
 inline constexpr std::uint32_t kEchoMs = 40;
+
+// How many edges of an encoder a board counts from one sample to the next. The sample may be late by the time that the safety thread
+// may be.
+inline constexpr std::uint32_t kLateSampleMs = kSafetyPeriodMs;
+constexpr std::uint32_t most_edges(std::uint16_t period_ms) {
+  return vm::kEdgesPerMs * (period_ms + kLateSampleMs);
+}
 
 // How long each row of a board's lights is on.
 inline constexpr std::uint32_t kRowMs = 2;

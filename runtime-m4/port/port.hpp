@@ -10,7 +10,6 @@
 //   kArenaScale             A program's data may take this many times the bytes it takes on the Cortex-M4.
 //   kMinStack               Minimum stack of a thread, in bytes.
 //   kUnprivilegedStackAlignment, kMaxUnprivilegedStack   Alignment and maximum bytes of an unprivileged thread's stack.
-//   kSecludedStack          Bytes and alignment of the stack of a secluded thread (ThreadSpec::data_bytes).
 //   struct Areas            What unprivileged threads may access besides their stacks: a readable area
 //                           and a writable one, which may lie inside the readable one.
 //   class Sandbox           Lets the thread of the highest rank run an unprivileged function: set(window, stack_top,

@@ -38,11 +38,14 @@ private:
   static constexpr policy::PinRange kAny[] = {{0, UINT16_MAX}};
   static constexpr policy::BoardPins kPins = {.outputs = boards::kOutputs,
                                               .inputs = kAny,
+                                              .echoes = kAny,
                                               .analog = kAny,
                                               .enables = kAny,
                                               .panels = kAny,
                                               .i2c_buses = UINT8_MAX,
-                                              .serial_lines = UINT8_MAX};
+                                              .serial_lines = UINT8_MAX,
+                                              .spi_buses = UINT8_MAX,
+                                              .selects = kAny};
 
   std::map<std::uint16_t, std::uint32_t> pulses_;
   std::uint64_t kicks_ = 0;

@@ -117,7 +117,7 @@ std::uint64_t Simulator::Impl::hand_over(std::uint64_t until_us) {
     places -= feeds.size();
     handed = tick;
     for (const auto& [channel, value] : feeds)
-      runtime.feed({.channel = channel, .at_us = tick, .value = value});
+      runtime.enqueue({.channel = channel, .at_us = tick, .value = value});
     waiting.erase(waiting.begin());
   }
   return until_us;

@@ -174,7 +174,9 @@ void Server::hello(const link::Frame& frame) {
   answer.arena_bytes = memory.arena_bytes;
   answer.arena_used = runtime_.needs().total;
   answer.step_budget = runtime_.limits().step_cost;
-  answer.drivers = runtime_.limits().drivers;
+  const std::uint64_t drivers = runtime_.limits().drivers;
+  answer.drivers = static_cast<std::uint32_t>(drivers);
+  answer.more_drivers = static_cast<std::uint32_t>(drivers >> 32);
   answer.receive_window = link::kReceiveWindow;
   answer.stopped = runtime_.stopped() ? 1 : 0;
   answer.pairing = gate_.pairing();

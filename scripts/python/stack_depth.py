@@ -15,7 +15,8 @@ import sys
 BOARD = r"boards::(\w+::)?Board::"
 PANEL = r"boards::(PanelSignal<.*>|PanelOutput)::(begin|show|end)\("
 OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound|say|panel)\(|" + PANEL
-INPUTS = BOARD + r"(i2c_\w+|input)\("
+TWO_BLOCKS = BOARD + r"i2c_read_two\("
+INPUTS = BOARD + r"(i2c_(?!read_two)\w+|input|measure)\("
 STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
 RUNTIME = r"Runtime::(began|halt|hold_to_budgets|look_at_rules|obey|progress|resting|running|tend_outputs)\("
 MODULE = r"^(state_bytes|robosync_no_scratch|cost|init|strength|\w+_process)\b"
@@ -38,6 +39,7 @@ CALLED_BY_POINTER = (
     (r"guard::", OUTPUTS),
     (r"drivers::Device::show\(", BOARD + r"show\("),
     (r"drivers::Device::", r"guard::OutputGuard::|" + OUTPUTS),
+    (r"drivers::(AxesChip|lsm6dsl|mpu6050)::", INPUTS + "|" + TWO_BLOCKS),
     (r"drivers::", INPUTS),
     (r"safety::Monitor::", RUNTIME + "|" + BOARD + "watchdog"),
     (r"vm::check_records", r"vm::.*check_of<"),

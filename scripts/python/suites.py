@@ -130,7 +130,8 @@ TOGETHER, TOGETHER_ON_THE_BOARD = 24, 8
 # times as long. On the host, a function that reaches the limit usually contains a std::find_if
 # or a std::visit, and the analyzer follows all its paths through the standard library.
 STATES_ON_THE_HOST, STATES_ON_THE_BOARD = 5_000, 20_000
-GCC_ALONE = ("-fno-tree-loop-distribute-patterns", "--param=")  # prefixes of options that clang rejects
+# Prefixes of options that clang rejects, and of the level of optimization, which changes nothing that clang-tidy finds.
+IRRELEVANT = ("-fno-tree-loop-distribute-patterns", "--param=", "-O")
 
 
 def starts_with(source, folders):
@@ -141,20 +142,21 @@ def product_batches(preset):
     """The product's sources that the preset compiles, grouped by flags: [(flags, sources)], the slowest first. A source that
     is compiled more than once appears once."""
     product = [folder for folder in OURS if folder not in ("tests", "bench")]
-    batches, seen = [], set()
+    batches, seen, unfilled = [], set(), {}
     for command in json.loads((ROOT / "build" / preset / "compile_commands.json").read_text()):
         words = shlex.split(command["command"])
         compiler = next(i for i, word in enumerate(words) if word.endswith(("cc", "c++", "g++")))
-        flags = [word for word in words[compiler + 1:words.index("-o")] if not word.startswith(GCC_ALONE)]
+        flags = [word for word in words[compiler + 1:words.index("-o")] if not word.startswith(IRRELEVANT)]
         sources = [source for source in compiled_together(command["file"])
                    if starts_with(source, product) and source not in seen]
         seen.update(sources)
         for source in sources:
             most = TOGETHER_ON_THE_BOARD if starts_with(source, ON_THE_BOARD) else TOGETHER
-            if batches and batches[-1][0] == flags and len(batches[-1][1]) < most:
-                batches[-1][1].append(source)
-            else:
-                batches.append((flags, [source]))
+            batch = unfilled.get((*flags, most))
+            if batch is None or len(batch[1]) == most:
+                batch = unfilled[*flags, most] = (flags, [])
+                batches.append(batch)
+            batch[1].append(source)
 
     def weight(batch):
         return not starts_with(batch[1][0], ON_THE_BOARD), -sum(Path(source).stat().st_size for source in batch[1])

@@ -16,6 +16,7 @@ from sounds import BYTES, NOISES_DB
 
 PROGRAM = rates.ROOT / "build/companion/bin/robosync-own-words"
 RATE = 16_000
+REFUSED = 2  # companion/exit.hpp: asked_wrongly
 # (tempo, pitch shift in hundredths of a semitone).
 TAUGHT, SAID = ((1, 0), (0.93, -30), (1.07, 30)), ((0.87, 50), (1.13, -50), (0.96, 20))
 LONGEST = 4 * RATE * BYTES  # of sounds that are none of the words
@@ -99,7 +100,7 @@ def write(path, sound):
 
 
 class Robot:
-    """A file with the words of a set, and the program that listens for them."""
+    """A file with the words of a set, and the program that listens for them. A word whose samples it refuses is one that it misses."""
 
     def __init__(self, folder, taught):
         self.folder = folder
@@ -109,11 +110,16 @@ class Robot:
         hiss = sounds.noise(12 * RATE * BYTES, RATE)
         for word, samples_of_it in taught.items():
             samples = [write(folder / f"sample{i}.wav", in_noise(sound, hiss, NOISES_DB[0], 0)) for i, sound in enumerate(samples_of_it)]
-            subprocess.run([PROGRAM, "--words", self.file, "--teach", self.names[word],
-                            *(part for path in samples for part in ("--recording", path))], check=True, stdout=subprocess.DEVNULL)
+            done = subprocess.run([PROGRAM, "--words", self.file, "--teach", self.names[word],
+                                   *(part for path in samples for part in ("--recording", path))],
+                                  check=False, stdout=subprocess.DEVNULL)
+            if done.returncode == REFUSED:
+                self.names[word] = None
+            else:
+                done.check_returncode()
 
     def hears(self, sound):
-        asked = [part for name in self.names.values() for part in ("--word", name)]
+        asked = [part for name in self.names.values() if name for part in ("--word", name)]
         done = subprocess.run([PROGRAM, "--words", self.file, "--source", write(self.folder / "said.wav", sound), "--no-pace", "--period",
                                "60000", "--shown_for", "0.1", "--strict", "50", *asked], check=True, text=True, stdout=subprocess.PIPE)
         return [line.split()[1] for line in done.stdout.splitlines() if not line.endswith(" none")]

@@ -211,6 +211,25 @@ TEST_CASE("check: more than an I2C bus carries at once is refused, where it is a
   CHECK_THAT(upload.err, Contains("I2C bus 0") && Contains("--anyway"));
 }
 
+TEST_CASE("an SPI bus and an I2C bus of the same number carry their sensors apart") {
+  const policy::BoardCosts& board = costs_of_board("microbit-v2");
+  std::vector<vm::Sensor> sensors(8);
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    sensors[s].driver = s < 4 ? vm::DriverId::lsm6dsl : vm::DriverId::mcp3008;
+    sensors[s].channel_count = s < 4 ? 7 : 8;
+    sensors[s].period_ms = 20;
+  }
+  vm::Image image;
+  image.sensors = sensors;
+  CHECK(analysis::overloaded_buses(image, board).empty());
+  for (vm::Sensor& sensor : sensors)
+    sensor.period_ms = 1;
+  const auto loads = analysis::overloaded_buses(image, board);
+  REQUIRE(loads.size() == 2);
+  CHECK((!loads[0].spi && loads[1].spi));
+  CHECK(loads[1].us == 4 * 3 * 8 * (board.spi_transfer_us + 3 * board.spi_byte_us));
+}
+
 TEST_CASE("all the sensors on the B-L475E-IOT01A at once are not too much for their bus") {
   const test::Folder folder;
   folder.write("robot.json", R"({"board": "b-l475e-iot01a", "sensors": [
@@ -255,6 +274,9 @@ TEST_CASE(
     CHECK(us_of(board, 20, ssd1306, 0, 50) == us(1, 20));
     CHECK(us_of(board, 20, vl53l0x, 1, 50) == us(4, 27));
     CHECK(us_of(board, 20, hts221, 2, 200) == us(4, 41));
+    const unsigned of_part = board.spi_transfer_us + 3 * board.spi_byte_us;
+    CHECK(us_of(board, 20, mcp3008, 8, 20) == 8 * of_part);
+    CHECK(us_of(board, 4, mcp3008, 8, 20) == 0);  // as many channels as a program can have
     CHECK(us_of(board, 20, digital_input, 1, 20) == 0);
     CHECK(us_of(board, 4, lsm6dsl, 7, 20) == 0);
     CHECK(us_of(board, 5, lsm6dsl, 7, 20) != 0);
@@ -462,6 +484,23 @@ TEST_CASE("what is told to measure began with the sample before: that is where i
     CHECK(path.share(path.base) < 0.5);
     CHECK(path.in_time());
   }
+}
+
+TEST_CASE("all the edges of an encoder that a board counts in a period may come at once") {
+  const tool::Program program = test::as_program(compiler::compile(
+      {"robot.rsl", "WHEN wheel DISTANCE > 20cm DO LOG \"there\" END\n"}, {"robot.json", R"({
+        "sensors": [{"name": "wheel", "type": "GPIO", "pin": 40, "device": "encoder", "pulses_per_turn": 20, "wheel": "65mm"}]})"}));
+  policy::BoardCosts board = tool::board_costs();
+  const auto edges = [&] {
+    const auto set = analysis::task_set_of(program.image(), board, tool::module_cost);
+    const auto found =
+        std::ranges::find(set.interferences, "the edges of wheel", &analysis::Interference::name);
+    return found == set.interferences.end() ? analysis::Interference{} : *found;
+  };
+  CHECK(edges().cost == 0);  // this board has no edges
+  board.edge = 150;
+  CHECK(edges().cost == 150ULL * 120);  // 4 in each of 20 + 10 ms
+  CHECK(edges().period == 20ULL * board.instructions_per_ms());
 }
 
 TEST_CASE("a sensor with an echo is asked 40 ms before: that is where its path begins") {

@@ -330,3 +330,23 @@ TEST_CASE("what follows a step comes late, and the next one may come soon after"
   REQUIRE(late != response.contributors.end());
   CHECK(late->cost == 2 * 2'000);
 }
+
+TEST_CASE("utilization: of a choice, each step runs at most the most expensive") {
+  TaskSet set;
+  analysis::Source source;
+  source.period = 1'000;
+  set.sources = {source};
+  analysis::Firing cheap;
+  cheap.cost = 100;
+  cheap.sources = {0};
+  analysis::Firing dear = cheap;
+  dear.cost = 300;
+  set.firings = {cheap, dear};
+  CHECK(analysis::utilization(set) == Approx(0.4));
+  for (analysis::Firing& rule : set.firings)
+    rule.choice = 0;
+  CHECK(analysis::utilization(set) == Approx(0.3));
+  for (analysis::Firing& rule : set.firings)
+    rule.alternates = true;
+  CHECK(analysis::utilization(set) == Approx(0.2));  // each as often as it can
+}

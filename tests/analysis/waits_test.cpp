@@ -275,6 +275,16 @@ std::string drawn_body(std::mt19937& random, unsigned depth) {
   return body;
 }
 
+// In ms, of those of the first ten rules.
+template <typename Wanted>
+Periods times_of_going_on(const test::Robot& robot, const Wanted& wanted) {
+  Periods times;
+  std::istringstream lines(robot.only("go_on"));
+  for (std::string line; std::getline(lines, line);)
+    if (wanted(static_cast<unsigned>(line.back() - '0'))) times.push_back(std::stoull(line));
+  return times;
+}
+
 }  // namespace
 
 TEST_CASE("no response goes on more often than is said") {
@@ -297,10 +307,7 @@ TEST_CASE("no response goes on more often than is said") {
     for (std::uint64_t ms = 0; ms < 4000; ms += 37)
       robot.feed(ms, "X", static_cast<int>(random() % 100));
     robot.run(4000);
-    Periods times;
-    std::istringstream lines(robot.only("go_on"));
-    for (std::string line; std::getline(lines, line);)
-      if (line.ends_with("go_on r0")) times.push_back(std::stoull(line));
+    const Periods times = times_of_going_on(robot, [](unsigned rule) { return rule == 0; });
     // In any stretch, of each source one more at most than its periods that fit.
     for (std::size_t i = 0; i < times.size(); ++i)
       for (std::size_t j = i; j < std::min(times.size(), i + 50); ++j) {
@@ -314,4 +321,56 @@ TEST_CASE("no response goes on more often than is said") {
       }
   }
   CHECK(bounded > 20);
+}
+
+TEST_CASE("responses that hold the same actuator go on no more often together than is said") {
+  std::mt19937 random(12);
+  constexpr unsigned kRules = 5;
+  std::size_t total = 0;
+  for (unsigned p = 0; p < 40; ++p) {
+    std::string program;
+    std::vector<bool> moves_a;
+    for (unsigned r = 0; r < kRules; ++r) {
+      moves_a.push_back(random() % 3 != 0);
+      program += fmt::format("WHEN near X IS BETWEEN {} AND {} DO\n{}\nWAIT 30ms\nWAIT 40ms\nEND\n",
+                             r * 20, r * 20 + 25, moves_a[r] ? "MOVE a TO 50%" : "MOVE b TO 50%");
+    }
+    INFO(program);
+    test::Robot robot(program);
+    Periods said;
+    const policy::BoardCosts& board = tool::board_costs();
+    for (const auto& source :
+         analysis::task_set_of(robot.image(), board, tool::module_cost).sources)
+      if (source.name == "responses that hold a")
+        said.push_back(source.period / board.instructions_per_ms());
+    if (std::ranges::count(moves_a, true) < 2) {
+      CHECK(said.empty());
+      continue;
+    }
+    REQUIRE(said == Periods{30});
+    for (std::uint64_t ms = 0; ms < 4000; ms += 13)
+      robot.feed(ms, "X", static_cast<int>(random() % 100));
+    robot.run(4000);
+    const Periods times = times_of_going_on(robot, [&](unsigned rule) { return moves_a[rule]; });
+    total += times.size();
+    for (std::size_t i = 1; i < times.size(); ++i)
+      CHECK(times[i] - times[i - 1] >= said.front());
+  }
+  CHECK(total > 300);
+}
+
+TEST_CASE("check: states that follow each other, each with a THEN, cost no more than one") {
+  const auto states = [](unsigned count) {
+    std::string text = "STATE m: s0";
+    for (unsigned i = 1; i < count; ++i)
+      text += fmt::format(", s{}", i);
+    for (unsigned i = 0; i < count; ++i)
+      text += fmt::format(
+          "\nWHEN m BECOMES s{}\nDO\n  MOVE left_arm TO 10deg\n  THEN\n  SET m TO s{}\nEND", i,
+          (i + 1) % count);
+    const tool::Program program = test::compile_with_docs_robot(text + "\n");
+    return analysis::utilization(
+        analysis::task_set_of(program.image(), tool::board_costs(), tool::module_cost));
+  };
+  CHECK(states(9) < states(3) + 0.06);
 }

@@ -71,10 +71,10 @@ vm::DriverId driver_of(const Device& device) {
   return device.is_sensor ? device.sensor.driver : device.actuator.driver;
 }
 
-// Lights, speakers and microphones are nothing that could be wired.
+// Lights, speakers, microphones, logos and thermometers of chips are nothing that could be wired.
 bool is_only_a_part(const Device& device) {
   return vm::drives_lights(driver_of(device)) || vm::drives_speaker(driver_of(device)) ||
-         vm::is_microphone(driver_of(device));
+         vm::is_of_board(driver_of(device));
 }
 
 // Does the firmware of `board` read or drive it?
@@ -84,11 +84,13 @@ bool runs_on(const Device& device, const Board& board) {
     return std::ranges::any_of(board.parts,
                                [&](const Board::Part& part) { return part.device == device.name; });
   if (vm::is_on_i2c(driver) || vm::drives_screen(driver)) return board.i2c_buses > 0;
+  if (vm::is_on_spi(driver)) return board.spi_buses > 0;
   if (vm::drives_player(driver)) return board.serial_lines > 0;
   if (vm::drives_panel(driver)) return !board.panels.empty();
   if (vm::drives_channel(driver)) return board.i2c_buses > 0 && !board.enables.empty();
   if (vm::is_on_pin(driver)) return !board.inputs.empty();
   if (vm::is_by_echo(driver)) return !board.inputs.empty() && !board.outputs.empty();
+  if (vm::counts_edges(driver)) return !board.echoes.empty();
   if (vm::is_analog(driver)) return !board.analog.empty();
   return (vm::drives_pin(driver) || vm::drives_wheels(driver)) && !board.outputs.empty();
 }
@@ -105,7 +107,7 @@ std::string boards_of(const Device& device) {
     names.push_back(code(board.name) +
                     (parts.empty() ? "" : " (on the board: " + joined(parts) + ")"));
   }
-  if (vm::is_microphone(driver_of(device))) return joined(names) + "; on the others it is fed";
+  if (vm::is_of_board(driver_of(device))) return joined(names) + "; on the others it is fed";
   if (!names.empty()) return joined(names);
   return device.has_driver
              ? "none yet: its commands take their time, but nothing is sent to a device"
@@ -156,7 +158,7 @@ std::string wiring_keys(const Device& device) {
     return row({"`address`",
                 fmt::format("{:#04x} to {:#04x}, and not {:#04x}", vm::kFirstChipAddress,
                             vm::kLastAddress, vm::kAllChipsAddress),
-                "required"}) +
+                fmt::format("{:#04x}", vm::kFirstChipAddress)}) +
            row({"`bus`", "a bus of the board", "0"}) +
            row({"`channel`", "0 to " + std::to_string(vm::kChipChannels - 1), "required"}) +
            row({"`enable`",
@@ -164,19 +166,29 @@ std::string wiring_keys(const Device& device) {
                 "required"});
   const bool screen = vm::drives_screen(driver_of(device));
   if (type->address)
-    rows += row({"`address`",
-                 device.addresses.empty()
-                     ? fmt::format("{:#04x} to {:#04x}",
-                                   screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
-                                   screen ? vm::kLastDisplayAddress : vm::kLastAddress)
-                     : addresses_of(device),
-                 "required"});
+    rows +=
+        row({"`address`",
+             device.addresses.empty()
+                 ? fmt::format("{:#04x} to {:#04x}",
+                               screen ? vm::kFirstDisplayAddress : vm::kFirstAddress,
+                               screen ? vm::kLastDisplayAddress : vm::kLastAddress)
+                 : addresses_of(device),
+             screen                         ? fmt::format("{:#04x}", vm::kFirstDisplayAddress)
+             : device.addresses.size() == 1 ? fmt::format("{:#04x}", device.addresses.front().first)
+                                            : "required"});
   if (vm::drives_player(driver_of(device)))
     return row({"`bus`", "a serial line of the board", "1"});
   if (type->bus) rows += row({"`bus`", "a bus of the board", "0"});
   if (vm::is_by_echo(driver_of(device)))
     return row({"`trigger`", "an output of the board", "required"}) +
            row({"`echo`", "an input of the board", "required"});
+  if (vm::counts_edges(driver_of(device)))
+    return row({"`pin`", "an input of the board whose edges it counts; or …", "required"}) +
+           row({"`pins`",
+                "two inputs, A and B: the edges of A are counted, and B gives the direction",
+                "–"}) +
+           row({"`pulses_per_turn`", "of the wheel, 1 to 10000", "required"}) +
+           row({"`wheel`", "its diameter, 0.5cm to 50cm", "required"});
   if (vm::is_analog(driver_of(device)))
     return row({"`pin`", "an analog input of the board", "required"});
   if (vm::drives_panel(driver_of(device)))
@@ -195,15 +207,20 @@ std::string wiring_keys(const Device& device) {
                 fmt::format("`left`, `right`: each {}% to {}% of the power", kLeastTrim,
                             vm::kFullTrim),
                 "100% for both"});
-  if (vm::has_two_pins(driver_of(device)))
+  if (vm::is_on_spi(driver_of(device)))
+    rows += row({"`pin`", "the board's pin that is wired to the part's select input", "required"});
+  else if (vm::has_two_pins(driver_of(device)))
     rows += row({"`pins`", "two outputs of the board: forward, backward", "required"});
   else if (type->pin)
     rows += row({"`pin`", device.is_sensor ? "an input of the board" : "an output of the board",
                  "required"});
   if (device.is_sensor && device.type == "GPIO")
     rows += row({"`active`", "`low`, `high`: the active level", "`low`"});
-  if (device.type == "I2C" && device.has_registers())
+  if (device.has_registers())
     rows += row({"`register`", "0 to " + std::to_string(device.inputs - 1), "0"});
+  if (driver_of(device) == vm::DriverId::spi_register)
+    rows +=
+        row({"`format`", "`uint16`, `int16`, `uint16le`, `int16le`, `uint8`, `int8`", "`uint16`"});
   return rows;
 }
 
@@ -257,9 +274,20 @@ std::string releases(bool hold) {
 std::string actuator_keys(const Device& device) {
   const ActuatorConfig& actuator = device.actuator;
   std::string rows;
-  if (actuator.to_unit != nullptr) {
+  if (actuator.to_unit != nullptr && !actuator.shows_numbers()) {
     const std::string range = range_of(actuator.min, actuator.max, actuator.to_unit);
-    rows += row({"`range`", "of `TO`, within " + range, range});
+    const std::string widest = range_of(actuator.lowest, actuator.highest, actuator.to_unit);
+    rows += row({"`range`", "of `TO`, within " + widest, range});
+  }
+  if (vm::is_servo(actuator.driver)) {
+    const vm::ServoPulses usual;
+    rows +=
+        row({"`pulse`",
+             fmt::format(
+                 "[its pulses](configuration.md#pulses-of-a-servo) at the ends of `range`, each "
+                 "from {} to {} us, or `ms`; with the longer one first it turns the other way",
+                 usual.at_min, usual.at_max),
+             fmt::format("`[\"{}us\", \"{}us\"]`", usual.at_min, usual.at_max)});
   }
   if (actuator.at_unit != nullptr) {
     const std::string above = "above " + format_value(0, *actuator.at_unit);
@@ -339,6 +367,15 @@ std::string pins(std::span<const Board::Pins> ranges) {
   return text;
 }
 
+std::string pins_for_encoders() {
+  std::string table = "| board | counted | direction |\n|---|---|---|\n";
+  for (std::size_t i = 0; i < board_names().size(); ++i) {
+    const Board board = board_at(i);
+    table += row({code(board.name), pins(board.echoes), pins(board.inputs)});
+  }
+  return table;
+}
+
 // A trigger is a pulse shorter than those of a servo.
 std::string pins_for_echoes() {
   std::string table = "| board | trigger | echo |\n|---|---|---|\n";
@@ -346,7 +383,7 @@ std::string pins_for_echoes() {
     const Board board = board_at(i);
     std::vector<Board::Pins> triggers;
     std::ranges::copy_if(board.outputs, std::back_inserter(triggers), &Board::Pins::power);
-    table += row({code(board.name), pins(triggers), pins(board.inputs)});
+    table += row({code(board.name), pins(triggers), pins(board.echoes)});
   }
   return table;
 }
@@ -393,6 +430,7 @@ void check_example(const std::string& section, const Device& device) {
 TEST_CASE("docs/devices.md says of each device what its descriptor and the boards do") {
   testing::expect_generated(kDevicesPage, "devices", overview());
   testing::expect_generated(kDevicesPage, "pins of hc-sr04", pins_for_echoes());
+  testing::expect_generated(kDevicesPage, "pins of encoder", pins_for_encoders());
   for (const DeviceText& text : device_texts()) {
     INFO(text.name);
     Diagnostics diagnostics;

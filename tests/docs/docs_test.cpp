@@ -149,9 +149,9 @@ TEST_CASE("the robot that is taught words in docs/algorithms.md works") {
   REQUIRE(robot != robots.end());
   const Folder folder;
   folder.write("robot.json", *robot);
-  const robosync::companion::Sample sample(8);
+  const robosync::companion::Sample sample(8, own_words_frame{});
   folder.write("my.words",
-               robosync::companion::write_words({{"merhaba", {sample}}, {"dur", {sample}}}));
+               robosync::companion::write_words({{"merhaba", {sample}, 0}, {"dur", {sample}, 0}}));
   const std::string file = folder.write(
       "robot.rsl", programs.front() +
                        "TEST \"it hears\"\n  AT 0s voice WORD = \"none\"\n  AT 1s voice WORD = "

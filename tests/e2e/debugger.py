@@ -73,6 +73,18 @@ class Debugger:
             self._ask("s")  # steps off the address, or the board would never leave it
         return found
 
+    def written(self, address, times, look):
+        """What look() gives each time the board has written the word at `address`. QEMU stops before the write."""
+        found = []
+        for _ in range(times):
+            self._expect_ok(f"Z2,{address:x},4")
+            if not self.go_on():
+                raise AssertionError("the board stopped for another reason")
+            self._expect_ok(f"z2,{address:x},4")
+            self.step()
+            found.append(look())
+        return found
+
     def step(self):
         self._ask("s")
 

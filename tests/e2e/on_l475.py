@@ -2,6 +2,7 @@
 the test plays others. Run with ROBOSYNC_BOARD=b-l475e-iot01a."""
 
 import json
+import math
 import re
 import struct
 import subprocess
@@ -61,6 +62,10 @@ DISTANCE = MOTION | {"sensors": [{"name": FRONT, "device": "distance"}]}
 NEAR = f"WHEN {FRONT} DISTANCE < 20cm MARGIN 1cm\nDO RUN lamp TO 70%\nEND\n"
 CLIMATE = MOTION | {"sensors": [{"name": AIR, "device": "climate"}]}
 DAMP = f"WHEN {AIR} HUMIDITY > 60% MARGIN 2%\nDO RUN lamp TO 70%\nEND\n"
+# The magnetometer there, whose register addresses do the same.
+COMPASS, COMPASS_ADDRESS, COMPASS_WHOLE = "magnet", 0x1E, {0xA0: 5, 0xA8: 6}
+FIELD = MOTION | {"sensors": [{"name": COMPASS, "device": "compass"}]}
+PULLED = f"WHEN {COMPASS} STRENGTH > 200uT MARGIN 20uT\nDO RUN lamp TO 70%\nEND\n"
 COSTS = ROOT / "runtime-m4/boards/b-l475e-iot01a/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*(\d+),", re.M)
 
@@ -78,6 +83,13 @@ MOVES = "WHEN near X > 10 DO MOVE arm TO 10deg END\n"
 TELL = "robosync::guard::OutputGuard::tell("
 COST_OF_PANEL, COST_OF_STRIP = (re.compile(rf"^COST\({name},\s*(\d+),", re.M) for name in ("panel", "strip"))
 STRIP = PANEL | {"actuators": [{"name": "eyes", "pin": 11, "device": "ws2812_strip", "lights": 64, "brightness": 20}]}
+# A part on SPI at D11 to D13, its select pin A5: DMA1's channels 2 (to memory) and 3, and their interrupt.
+KNOB = {"board": "b-l475e-iot01a", "sensors": [{"name": "knob", "device": "mcp3008", "pin": 45, "channels": {"LEVEL": {"input": 5}}}],
+        "actuators": []}
+TURNED_UP = 'WHEN knob LEVEL > 50% DO LOG "up" END\n'
+COUNT_2, MEMORY_2, SPI_INTERRUPT, ENDED_2, READ_5 = ("DMA1", 0x20), ("DMA1", 0x28), 12, 1 << 5, 0x3A
+BOTH_WAYS, OUT, RELEASED, SPI_ENDED = 0x374, 0x14, 1, "robosync::boards::stm32l4::parts::on_interrupt("
+COST_OF_SPI = re.compile(r"^COST\((spi_\w+),\s*(\d+),", re.M)
 FADES = "EVERY 300ms DO LIGHT eyes TO 77.7% OVER 77ms\nTHEN\nBLINK eyes purple END\n"
 
 
@@ -164,10 +176,10 @@ class Bus(DebuggedTest):
         registers = bytearray(128)
         for at, value in WITHOUT_POWER.items():
             registers[at] = value
-        self.asked, self.taken = [], []
+        self.asked, self.taken, self.measured = [], [], []
         self.assertEqual(self.turn(wires, registers, 80, -100, 100), [80, -100, 100])
         self.assertEqual(registers[SETTING:SETTING + len(TOLD)], TOLD)
-        self.most_of_a_sample = max(self.asked) + max(self.taken[1:])  # once the sensor has been told; for bench/bus.py
+        self.most_of_a_sample = max(self.asked) + max(self.measured)  # once the sensor has been told; for bench/bus.py
         costs = {name: int(value) for name, value in COST_OF_BUS.findall(COSTS.read_text())}
         for what, said, measured in (("asking", 3 * costs["i2c_ask"], max(self.asked)),
                                      ("taking", 3 * costs["i2c_transfer"] + 26 * costs["i2c_byte"], max(self.taken))):
@@ -181,7 +193,7 @@ class Bus(DebuggedTest):
         self.upload(self.folder / "part.rsl", "--config", self.folder / "part.json")
         wires = pins.Pins(self.folder)
         self.addCleanup(wires.close)
-        self.asked, self.taken = [], []
+        self.asked, self.taken, self.measured = [], [], []
         return wires
 
     def assert_lamp_is_lit(self, debugger):
@@ -227,6 +239,19 @@ class Bus(DebuggedTest):
             self.assert_lamp_is_lit(debugger)
         self.assert_costs(4, 41)
 
+    def test_the_magnetometer_on_the_board_is_told_and_read(self):
+        wires, registers = self.start(FIELD, PULLED), bytearray(64)
+        registers[0x20], registers[0x22] = 0x10, 0x03
+        with self.debugger() as debugger:
+            self.played = len(self.told(TRANSFER))
+            for counts in ((500, 0, 500), (-300, 20, -2100), (3000, -2900, 2)):
+                registers[0x28:0x2E] = struct.pack("<hhh", *counts)
+                given = self.reading(debugger, wires, registers, "lis3mdl", COMPASS_ADDRESS, COMPASS_WHOLE, GOES_ON)
+                self.assertEqual(given, math.isqrt(sum(count * count for count in counts)))
+                self.assertEqual(registers[0x20:0x25], bytes((0x7C, 0x60, 0, 0x0C, 0x40)))
+            self.assert_lamp_is_lit(debugger)
+        self.assert_costs(3, 24)
+
     def turn(self, wires, registers, *speeds):
         """The driver's results for each speed, while the board lies still."""
         registers[Z:Z + 2] = round(1 / 0.000122).to_bytes(2, "little")
@@ -255,6 +280,7 @@ class Bus(DebuggedTest):
                 self.taken.append(steps)
             self.assertLessEqual(read.items(), whole.items())  # at the start one may be under way
             if given:
+                self.measured.append(steps)
                 return int.from_bytes(debugger.read_words(place, 1)[0].to_bytes(4, "little"), "little", signed=True)
         return self.fail("nothing is read")
 
@@ -271,7 +297,8 @@ class Bus(DebuggedTest):
                 wires.write(self.told(MEMORY_5)[-1], bytes(registers[first:first + found[place]]))
             else:
                 place, *values = wires.read(self.told(MEMORY_4)[-1], self.told(COUNT_4)[-1])
-                registers[place:place + len(values)] = bytes(values)
+                first = place & ~goes_on
+                registers[first:first + len(values)] = bytes(values)
             self.played += 1
             wires.interrupt(CORE, BUS_INTERRUPT)
             debugger.run_to(handler, lambda: None)
@@ -300,10 +327,118 @@ class Bus(DebuggedTest):
 
     def read_of_state(self):
         """The address where the interrupt handler reads the master's state, and the register it reads into."""
-        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::stm32l4::I2cMaster::on_interrupt("))
+        place = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::boards::AskedBus<robosync::boards::stm32l4::I2cMaster>::on_interrupt("))
         said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={place & ~1:#x}", f"--stop-address={(place & ~1) + 64:#x}",
                                FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
         found = re.search(r"^\s*([0-9a-f]+):.*\sldr(?:\.w)?\s+r(\d+), \[r\d+, #24\]", said, re.M)
+        return int(found[1], 16), int(found[2])
+
+
+class Spi(DebuggedTest):
+    def qemu_arguments(self):
+        return [*unimplemented.arguments(self.folder), *pins.arguments(self.folder), *super().qemu_arguments()]
+
+    told, first_answer = Bus.told, Bus.first_answer
+
+    def begin(self, robot=None, text=TURNED_UP):
+        (self.folder / "spi.json").write_text(json.dumps(robot or KNOB))
+        (self.folder / "spi.rsl").write_text(text)
+        return self.folder / "spi.rsl", "--config", self.folder / "spi.json"
+
+    def functions(self, wires):
+        """Of PA5 and PA7; and their modes and that of PA6."""
+        return wires.word(PORT_A + 0x20) >> 20 & 0xF0F, wires.word(PORT_A) >> 10 & 0x3F
+
+    def test_a_transfer_that_does_not_end_is_told_and_holds_nobody_up_and_the_pins_are_given_back(self):
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        self.status()
+        before = self.functions(wires)
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", *self.begin())
+        try:
+            silent = {"event": "silent", "sensor": "knob", "bus": 0, "pin": 45}
+            self.assertTrue(reader.wait_for(lambda lines: any(silent.items() <= json.loads(line).items() for line in lines), PATIENCE),
+                            reader.lines[-8:])
+        finally:
+            reader.stop()
+        self.assertEqual(self.functions(wires), (0x505, 0b10_10_10))
+        self.assertEqual((set(self.told(SPI_CONTROL)), set(self.told(COUNT_2)), set(self.told(COUNT_3))), ({BOTH_WAYS}, {3}, {3}))
+        said = rsc.info(self.board.port)
+        self.assertEqual((said["status"]["safety_late_us"], said["status"]["faults"]), (0, 0))
+        [knob] = said["buses"]["devices"]
+        self.assertEqual((knob["driver"], knob["pin"], knob["answers"], knob["failed"] > 0), ("mcp3008", 45, False, True))
+        self.upload(*self.begin(SERVO, MOVES))
+        self.assertEqual(self.functions(wires), before)
+        self.assertEqual(wires.word(PORT_C + OUT) & RELEASED, RELEASED)
+
+    def test_what_it_is_told_and_what_that_costs(self):
+        """The test plays SPI1, its DMA, and the part."""
+        self.upload(*self.begin())
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        at = symbols(FIRMWARE)
+        driver = next(place for name, place in at.items() if name.startswith("robosync::drivers::mcp3008::read("))
+        read, where = self.read_of_state(next(place for name, place in at.items() if name.startswith(SPI_ENDED)))
+        asked, ended, taken = [], [], []
+        with self.debugger() as debugger:
+            for value in (1023, 512, 5):
+                asked.append(self.ask(debugger, driver))
+                self.assertEqual(wires.word(PORT_C + OUT) & RELEASED, 0)
+                self.assertEqual(wires.read(self.told(MEMORY_3)[-1], 3), bytes((READ_5, 0, 0)))
+                again = int(f"{value:010b}"[-2:-7:-1], 2)  # B1 to B5
+                wires.write(self.told(MEMORY_2)[-1], b"\xff" + (value << 5 | again).to_bytes(2, "big"))
+                wires.interrupt(CORE, SPI_INTERRUPT)
+                debugger.run_to(at["Spi_Handler"], lambda: None)
+                ended.append(debugger.steps_to_return({read: (where, ENDED_2)}))
+                self.assertEqual(wires.word(PORT_C + OUT) & RELEASED, RELEASED)
+                debugger.run_to(driver, lambda: None)
+                place = debugger.register(3)
+                taken.append(debugger.steps_to_return())
+                self.assertEqual((debugger.register(0) & 1, debugger.read_words(place, 1)), (1, [value]))
+        print(f"\n  asked {asked}, interrupts {ended}, taken {taken}")
+
+    def test_what_as_many_channels_as_there_can_be_cost(self):
+        """Transfers that end, and others that are given up."""
+        parts = {f"part{pin}": [f"C{i}" for i in range(8)] for pin in (45, 0, 2, 10)}
+        robot = KNOB | {"sensors": [{"name": name, "device": "mcp3008", "pin": int(name[4:]), "channels": {
+            channel: {"input": i} for i, channel in enumerate(channels)}} for name, channels in parts.items()]}
+        rules = [f'WHEN {name} {channel} > 50% DO LOG "up" END\n' for name, channels in parts.items() for channel in channels]
+        self.upload(*self.begin(robot, "".join(rules)))
+        wires = pins.Pins(self.folder)
+        self.addCleanup(wires.close)
+        at = symbols(FIRMWARE)
+        driver = next(place for name, place in at.items() if name.startswith("robosync::drivers::mcp3008::read("))
+        read, where = self.read_of_state(next(place for name, place in at.items() if name.startswith(SPI_ENDED)))
+        calls, ended = [], []
+        with self.debugger() as debugger:
+            for call in range(3 * len(rules)):
+                debugger.run_to(driver, lambda: None)
+                calls.append(debugger.steps_to_return())
+                if call > 2 * len(rules):
+                    wires.interrupt(CORE, SPI_INTERRUPT)
+                    debugger.run_to(at["Spi_Handler"], lambda: None)
+                    ended.append(debugger.steps_to_return({read: (where, ENDED_2)}))
+        costs = {name: int(number) for name, number in COST_OF_SPI.findall(COSTS.read_text())}
+        for what, said, measured in (("asking", costs["spi_ask"], max(calls) + max(ended)), ("taking", costs["spi_transfer"], max(calls))):
+            print(f"\n  {what}: {measured}, said {said}")
+            self.assertGreaterEqual(said, measured)
+            self.assertLessEqual(said, 2 * measured)  # how many wait together depends on the moment
+
+    def ask(self, debugger, driver):
+        """The instructions of the driver's next call that begins a transfer."""
+        before = len(self.told(COUNT_2))
+        for _ in range(CALLS):
+            debugger.run_to(driver, lambda: None)
+            steps = debugger.steps_to_return()
+            if len(self.told(COUNT_2)) > before:
+                return steps
+        return self.fail("it is asked no more")
+
+    def read_of_state(self, handler):
+        """The address where the interrupt handler reads the channels' flags, and the register it reads into."""
+        said = subprocess.run(["arm-none-eabi-objdump", "-d", f"--start-address={handler & ~1:#x}", f"--stop-address={(handler & ~1) + 96:#x}",
+                               FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
+        found = re.search(r"^\s*([0-9a-f]+):[^\n]*\sldr(?:\.w)?\s+r(\d+), \[r\d+(?:, #0)?\]\n[^\n]*\s(?:and|tst)\S*\s[^\n]*#160", said, re.M)
         return int(found[1], 16), int(found[2])
 
 

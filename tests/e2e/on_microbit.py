@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 import unittest
-import wave
 from pathlib import Path
 
 import panel
@@ -17,13 +16,13 @@ import pins
 import rsc
 import test_store
 from debugger import LINK_REGISTER, PC, DebuggedTest, Debugger
+from microphone import COSTS, HAPPY, P0_OUT, PATIENCE, Hearing
 from support import TURNS_ROUND, LineReader, wheel_on
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, ROOT  # noqa: E402
 from counting import symbols  # noqa: E402
 
-PATIENCE = 20
 WRITE = re.compile(r"device write \(size 4, offset 0x([0-9a-f]+), value 0x([0-9a-f]+)\)")
 PERIPHERALS = 0x4000_0000
 PIN_OF_PWM0 = [0x4001_C560, 0x4001_C564, 0x4001_C568, 0x4001_C56C]  # PSEL.OUT
@@ -47,7 +46,6 @@ END
 """
 # The lights' pins of port 0: QEMU has no second port, where column 4 is.
 ROWS, COLUMNS = (21, 22, 15, 24, 19), {0: 28, 1: 11, 2: 31, 4: 30}
-P0_OUT = 0x5000_0504
 # The speaker: PSEL.OUT, and the address from which the module fetches its values; the last is the period in microseconds.
 PIN_OF_SPEAKER, VALUES_OF_SPEAKER, P0_00 = 0x4002_2560, 0x4002_2520, 0
 HORN = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
@@ -92,7 +90,6 @@ CHANGES = "EVERY 100ms DO SHOW face heart FOR 30ms\nTHEN\nSHOW face happy END\n"
 FACE = {"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
         "actuators": [{"name": "face", "device": "lights"}]}
 SHOWS = "WHEN near X > 10\nDO\n  {}\nEND\n"
-HAPPY = [".....", ".#.#.", ".....", "#...#", ".###."]
 LOOKS = 4000
 # The bus of the parts on the board. QEMU has only its registers: they store what is written, and always report that the bus has stopped.
 BUS_WRITE = re.compile(r"microbit_i2c_write: 0x([0-9a-f]+) <- 0x([0-9a-f]+)")
@@ -106,17 +103,6 @@ WAKE = bytes((0xA0, 0x67, 0, 0, 0x90))
 ASLEEP = bytes((0x07, *13 * (0,)))
 AWAKE = bytes((*WAKE[1:], 0, 0, 0, 8))  # and two bytes for each axis
 REGISTERS = len(ASLEEP)
-# The microphone: its power, RESULT.PTR and CH[1].PSELP of SAADC, and the counter of its blocks, which
-# QEMU has (it has neither SAADC nor PPI).
-MICROPHONE = "robosync::boards::microbit::microphone::"
-RUN_MIC, SAADC = 20, 0x4000_7000
-SOUND_TO, SOUND_INPUT = (SAADC + at for at in (0x62C, 0x520))
-BLOCK_ENDED = 0x4000_A008  # TIMER2, TASKS_COUNT
-BLOCK, HALF, RESTS_AT, STEPS, MEAN_PARTS = 160, 80, 8000, 4, 128
-HEARS = {"sensors": [{"name": "microphone", "device": "microphone"}], "actuators": FACE["actuators"],
-         "algorithms": [{"name": "ear", "module": "sound_events", "input": "microphone"}]}
-CLAPS = "WHEN ear EVENT IS clap\nDO SHOW face happy\nEND\n"
-COST_OF_SOUND = re.compile(r"^COST\(sound,\s*([\d']+),", re.M)
 # A display on that bus; the bytes that are sent to it (drivers/served.hpp), and how its driver draws a picture.
 OLED = {"sensors": FACE["sensors"],
         "actuators": [{"name": "face", "type": "I2C", "device": "ssd1306", "bus": 1, "address": "0x3c"}]}
@@ -124,7 +110,6 @@ OLED_ADDRESS, EXCHANGE = 0x3C, "robosync::drivers::exchange("
 COMMAND, DATA, PAGE_COLUMNS, PAGES, LEFT, SIDE = 0x80, 0x40, 128, 8, 36, 12
 TRANSFERS = 400  # at most this many are examined; a round has 98
 COST_OF_DRIVER = r"(?m)^ACTUATOR_DRIVER\({},\s*(\d+),\s*(\d+),\s*(\d+),"
-COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 COST_OF_BUS = re.compile(r"^COST\((i2c_\w+),\s*([\d']+),", re.M)
 COST_OF_SAYING = re.compile(r"^COST\(say,\s*(\d+),", re.M)
 COST_OF_PANEL = re.compile(r"^COST\(panel,\s*(\d+),", re.M)
@@ -208,7 +193,7 @@ class KeptInFlash(test_store.Switched):
         self.assertNotIn("blx", "\n".join(code))
 
 
-class OnMicrobit(DebuggedTest):
+class OnMicrobit(Hearing, DebuggedTest):
     def qemu_arguments(self):
         self.log = self.folder / "told"
         return ["-d", "unimp", "-D", str(self.log), *pins.arguments(self.folder), *super().qemu_arguments()]
@@ -331,12 +316,15 @@ class OnMicrobit(DebuggedTest):
         self.begin('PLAY face "two.wav" FOR 60s', "EVERY 100ms DO PLAY face \"one.wav\" FOR 50ms END\n", PLAYER)
         self.compare_costs({TELL: int(COST_OF_SAYING.search(COSTS.read_text())[1])})
 
-    def await_on_panel(self, wires, picture):
-        wanted, give_up, shown = panel.chain(picture, RED, 8, True), time.monotonic() + PATIENCE, None
+    def await_colors(self, wires, wanted):
+        give_up, shown = time.monotonic() + PATIENCE, None
         while shown != wanted:
             self.assertLess(time.monotonic(), give_up, shown)
             if self.told(PANEL_START):
                 shown = panel.colors("microbit-v2", wires.read(self.told(PANEL_FROM)[-1], self.told(PANEL_COUNT)[-1]), LIGHTS)
+
+    def await_on_panel(self, wires, picture):
+        self.await_colors(wires, panel.chain(picture, RED, 8, True))
 
     def test_a_panel_is_told_its_picture_until_the_robot_is_stopped_and_its_pin_is_given_back(self):
         wires = pins.Pins(self.folder)
@@ -364,22 +352,15 @@ class OnMicrobit(DebuggedTest):
         self.begin("SHOW face heart", CHANGES, PANEL)
         self.compare_costs({TELL: int(COST_OF_PANEL.search(COSTS.read_text())[1])})
 
-    def await_on_strip(self, wires, color):
-        give_up, shown = time.monotonic() + PATIENCE, None
-        while shown != [color] * LIGHTS:
-            self.assertLess(time.monotonic(), give_up, shown)
-            if self.told(PANEL_START):
-                shown = panel.colors("microbit-v2", wires.read(self.told(PANEL_FROM)[-1], self.told(PANEL_COUNT)[-1]), LIGHTS)
-
     def test_a_strip_is_told_its_colour_and_goes_dark_when_the_robot_is_stopped(self):
         wires = pins.Pins(self.folder)
         self.addCleanup(wires.close)
         self.begin("LIGHT eyes red", "", STRIP)
-        self.await_on_strip(wires, 0)
+        self.await_colors(wires, [0] * LIGHTS)
         self.say("feed", "near.X=20")
-        self.await_on_strip(wires, RED)
+        self.await_colors(wires, [RED] * LIGHTS)
         self.say("stop")
-        self.await_on_strip(wires, 0)
+        self.await_colors(wires, [0] * LIGHTS)
         status = rsc.info(self.board.port)["status"]
         self.assertEqual((status["faults"], status["safety_late_us"]), (0, 0))
 
@@ -526,129 +507,6 @@ class OnMicrobit(DebuggedTest):
         lights = {((x - LEFT) // SIDE, y // SIDE) for x, y in lit}
         whole = {(LEFT + SIDE * column + x, SIDE * row + y) for column, row in lights for x in range(SIDE) for y in range(SIDE)}
         return lights if lit == whole else None
-
-    def begin_hearing(self):
-        config, program = self.folder / "hears.json", self.folder / "hears.rsl"
-        config.write_text(json.dumps({"board": "microbit-v2", **HEARS}))
-        program.write_text(CLAPS)
-        self.upload(program, "--config", config)
-        wires = pins.Pins(self.folder)
-        self.addCleanup(wires.close)
-        return wires, program, config
-
-    def place_in(self, name):
-        return next(at for known, at in symbols(FIRMWARE).items() if known.startswith(MICROPHONE + name))
-
-    def place_of_byte(self, name):  # symbols() clears the lowest bit of an address
-        listing = subprocess.run(["arm-none-eabi-nm", "-C", FIRMWARE], check=True, text=True, stdout=subprocess.PIPE).stdout
-        return int(re.search(rf"^(\w+) \w {re.escape(MICROPHONE + name)}$", listing, re.M)[1], 16)
-
-    def play(self, debugger, wires, blocks):
-        """Plays the converter: at each call of hear() a block has come to its buffer, first the one of half the length."""
-        hear, buffers = self.place_in("hear("), self.place_in("(anonymous namespace)::blocks")
-        debugger.run_to(hear, lambda: None)
-        debugger.step()
-        debugger.run_to(hear, lambda: None)  # it has been started, but QEMU has not said so
-        wires.write(self.place_of_byte("(anonymous namespace)::runs"), bytes([1]))
-        for i, block in enumerate(blocks):
-            wires.write(buffers + i % 2 * 2 * BLOCK, b"".join(value.to_bytes(2, "little") for value in block))
-            wires.set_word(BLOCK_ENDED, 1)
-            debugger.step()
-            debugger.run_to(hear, lambda: None)
-            self.await_told(SOUND_TO, buffers + i % 2 * 2 * BLOCK)  # the one that it took is the next but one
-
-    def clap(self):
-        """Blocks as the converter gives them, 14 bits. The first whole one begins at the mean, so what is before it has no effect."""
-        draw = random.Random(1)
-        heights = [0] + 30 * [8] + [2200, 400] + 20 * [8]
-        whole = [[max(0, min(16383, round(draw.gauss(RESTS_AT, height)))) for _ in range(BLOCK)] for height in heights]
-        whole[1][0] = RESTS_AT
-        return [whole[0][:HALF], *whole[1:]]
-
-    def without_mean(self, blocks):
-        """As boards::Board::hear() says: 16 bits, without the mean voltage."""
-        mean, without = blocks[0][0] * STEPS * MEAN_PARTS, []
-        for block in blocks:
-            heard = []
-            for value in block:
-                mean += value * STEPS - mean // MEAN_PARTS
-                heard.append(max(-32768, min(32767, value * STEPS - mean // MEAN_PARTS)))
-            without.append(heard)
-        return without[1:]
-
-    def heard_on_host(self, program, config, blocks):
-        """The readings that rsc run has of the same sound."""
-        with wave.open(str(self.folder / "clap.wav"), "wb") as file:
-            file.setparams((1, 2, 8000, 0, "NONE", ""))
-            file.writeframes(b"".join(value.to_bytes(2, "little", signed=True) for block in blocks for value in block))
-        scenario = self.folder / "clap.json"
-        scenario.write_text(json.dumps({"duration": "3s", "stimuli": [{"sound": "clap.wav", "sensor": "microphone", "at": "1s"}]}))
-        told = rsc.run("run", program, "--config", config, "--scenario", scenario, "--format", "json")
-        return self.readings(told.splitlines())
-
-    def readings(self, lines):
-        told = map(json.loads, lines)
-        return [(event["channel"], event["value"]) for event in told
-                if event.get("event") == "input" and event.get("sensor") == "microphone" and event["value"] is not None]
-
-    def test_a_clap_that_the_converter_writes_is_heard_as_on_the_host_and_lights_the_face(self):
-        wires, program, config = self.begin_hearing()
-        self.assertEqual(self.told(SOUND_INPUT)[-1], 4)
-        self.assertEqual(wires.word(P0_OUT) >> RUN_MIC & 1, 1)
-        blocks = self.clap()
-        wanted = self.heard_on_host(program, config, self.without_mean(blocks))
-        self.assertGreater(len(wanted), 60)
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        try:
-            self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
-            with self.debugger() as debugger:
-                self.play(debugger, wires, blocks)
-            self.assertTrue(reader.wait_for(lambda lines: len(self.readings(lines)) >= len(wanted), PATIENCE))
-        finally:
-            reader.stop()
-        self.assertEqual(self.readings(reader.lines)[:len(wanted)], wanted)
-        self.assertEqual(self.seen(wires), dict(enumerate(row[:3] + "." + row[4] for row in HAPPY)))
-        status = self.status()
-        self.assertEqual((status["faults"], status["safety_late_us"]), (0, 0))
-        self.begin("SHOW face happy")
-        self.assertEqual(wires.word(P0_OUT) >> RUN_MIC & 1, 0)
-        self.assertEqual(self.told(SOUND_INPUT)[-1], 0)
-
-    def test_a_microphone_that_never_answers_is_told_and_holds_nothing_up(self):
-        _, program, config = self.begin_hearing()
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json", "--upload", program, "--config", config)
-        try:
-            told = {"event": "silent", "sensor": "microphone"}
-            self.assertTrue(reader.wait_for(lambda lines: any(told.items() <= json.loads(line).items() for line in lines), PATIENCE))
-        finally:
-            reader.stop()
-        status = self.status()
-        self.assertEqual((status["faults"], status["safety_late_us"]), (0, 0))
-
-    def test_what_a_block_of_sound_costs(self):
-        """A tone of a pitch for which the ear does most (bench/firmware/ear_bench.cpp)."""
-        wires, *_ = self.begin_hearing()
-        draw = random.Random(1)
-        tone = [[RESTS_AT + (BLOCK * i + at) % 4 * 800 + draw.randrange(200) for at in range(BLOCK)] for i in range(8)]
-        sample = next(at for name, at in symbols(FIRMWARE).items() if name.startswith("robosync::drivers::Microphone::sample("))
-        counts = []
-        with self.debugger() as debugger:
-            self.play(debugger, wires, [tone[0][:HALF], *tone[1:]])
-            wires.set_word(BLOCK_ENDED, 1)
-            while len(counts) < 3 or counts[-1][1] < 4:
-                debugger.run_to(sample, lambda: None)
-                if debugger.register(2) & 0xFF:  # the first channel
-                    wires.write(self.place_in("(anonymous namespace)::blocks"), b"".join(value.to_bytes(2, "little") for value in 2 * tone[0]))
-                    wires.set_word(BLOCK_ENDED, 1)
-                    counts.append([0, 0])
-                steps = debugger.steps_to_return(most=100_000)
-                if counts:
-                    counts[-1] = [counts[-1][0] + steps, counts[-1][1] + 1]
-        measured = max(count for count, _ in counts)
-        print(f"\n  20 ms of sound: {measured} of {counts}")
-        said = int(COST_OF_SOUND.search(COSTS.read_text())[1].replace("'", ""))
-        self.assertGreaterEqual(said, measured)
-        self.assertLessEqual(said, 1.25 * measured + 60)
 
     def test_what_the_bus_costs(self):
         wires, read = self.begin_motion()

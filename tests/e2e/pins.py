@@ -16,7 +16,8 @@ LINES = {
                        12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
     "nucleo-l476rg": {2: ("/machine/soc/gpioa", 10), 4: ("/machine/soc/gpiob", 5), 7: ("/machine/soc/gpioa", 8),
                       9: ("/machine/soc/gpioc", 7), 12: ("/machine/soc/gpioa", 6), 32: ("/machine/soc/gpioc", 13)},
-    "microbit-v2": {5: ("/machine/nrf51", 14), 11: ("/machine/nrf51", 23)},
+    "microbit-v2": {pin: ("/machine/nrf51", line) for pin, line in
+                    {0: 2, 1: 3, 2: 4, 5: 14, 8: 10, 9: 9, 11: 23, 12: 12, 13: 17, 14: 1}.items()},
 }
 VIRTUAL = range(40, 44)  # the mps2-an386's inputs: bits of a word of its memory
 
@@ -41,12 +42,14 @@ class Pins:
 
     def set(self, pin, high):
         if NAME in LINES:
-            device, line = LINES[NAME][pin]
-            self._say(f"set_irq_in {device} unnamed-gpio-in {line} {int(high)}")
+            self.set_line(*LINES[NAME][pin], int(high))
         else:
             mask = 1 << VIRTUAL.index(pin)
             self._word = self._word | mask if high else self._word & ~mask
             self._say(f"writel {symbols(FIRMWARE)['robosync_virtual_inputs']:#x} {self._word:#x}")
+
+    def set_line(self, device, line, level):
+        self._say(f"set_irq_in {device} unnamed-gpio-in {line} {level}")
 
     def word(self, address):
         return int(self._say(f"readl {address:#x}").split()[1], 16)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -61,6 +62,9 @@ def wheel_on(forward, back):
         "actuators": [{"name": "wheel", "type": "PWM", "pins": [forward, back], "device": "motor"}]})
 
 
+PATIENCE = 20  # seconds
+
+
 class RobotTest(unittest.TestCase):
     """One board for each test, and a folder that is deleted after it. ROBOSYNC_BOARD in the environment selects the board."""
 
@@ -97,6 +101,9 @@ class RobotTest(unittest.TestCase):
         """Adapts a robot.json to the running board: to pins that it has."""
         robot = json.loads(Path(config).read_text())
         wired_as_it_can(robot.get("actuators", []))
+        for algorithm in robot.get("algorithms", []):
+            if words := algorithm.get("config", {}).get("words"):
+                algorithm["config"]["words"] = str(Path(config).parent.resolve() / words)
         path = self.folder / "robot.json"
         path.write_text(json.dumps({**robot, "board": NAME}))
         return path
@@ -106,6 +113,20 @@ class RobotTest(unittest.TestCase):
 
     def status(self):
         return rsc.info(self.board.port)["status"]
+
+    def listen(self):
+        """A monitor that tells events as JSON, from now on."""
+        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
+        self.addCleanup(reader.stop)
+        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
+        return reader
+
+    def await_event(self, reader, event, times=1, **wanted):
+        wanted = {"event": event, **wanted}
+
+        def came(lines):
+            return sum(wanted.items() <= json.loads(line).items() for line in lines) >= times
+        self.assertTrue(reader.wait_for(came, PATIENCE), (wanted, reader.lines[-8:]))
 
     def write_scenario(self, readings, lead_ms):
         stimuli = [{"at": f"{lead_ms + r.at_ms}ms", "sensor": r.channel.split(".")[0],
@@ -193,11 +214,17 @@ class LineReader:
             time.sleep(0.01)
 
     def stop(self):
-        """Ends rsc; returns its stderr."""
-        self._process.terminate()
+        """Ends rsc, if it still runs; returns its stderr."""
+        return self.end(signal.SIGTERM)[1] if self._process.stderr is not None else ""
+
+    def end(self, ending):
+        """Sends the signal, if any, and waits for the end; returns the exit code and stderr."""
+        if ending is not None:
+            self._process.send_signal(ending)
         errors = self._process.stderr.read().decode()
-        self._process.wait()
+        code = self._process.wait()
         self._read()
         self._process.stderr.close()
+        self._process.stderr = None
         self._file.close()
-        return errors
+        return code, errors

@@ -1,5 +1,6 @@
-"""Analog inputs on the boards' firmware. The reference board's are words of its memory, which the test writes. QEMU does not have
-the other boards' converters, so there they never answer. ROBOSYNC_BOARD selects the board."""
+"""Analog inputs on the boards' firmware, and what only the micro:bit has: outputs that are inputs of other programs, and its logo.
+The reference board's inputs are words of its memory, which the test writes. QEMU does not have the other boards' converters, so
+there they never answer. ROBOSYNC_BOARD selects the board."""
 
 import json
 import sys
@@ -10,12 +11,11 @@ import pins
 import rsc
 from board import FIRMWARE, NAME
 from debugger import PC, DebuggedTest
-from support import LineReader
+from support import PATIENCE, LineReader
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
-PATIENCE = 20
 FULL = 4095
 WORD = 4
 REFERENCE = NAME not in pins.LINES
@@ -36,8 +36,13 @@ END
 """ + "".join(f'WHEN a{pin} FORCE > 50%\nDO LOG "{pin} is held"\nELSE LOG "{pin} is free"\nEND\n' for pin in ANALOG)
 OTHER = 'WHEN a%d FORCE > 50%%\nDO LOG "held"\nEND\n' % LAST
 GPIO_CONFIGURATION = 0x5000_0700  # nRF52833 and its predecessor: a word for each pin of port 0
-LOW_OUTPUT, NOT_DRIVEN = 0b11, 0b10
+LOW_OUTPUT, NOT_DRIVEN, PULLED_UP = 0b11, 0b10, 0b1100
 PINS_OF_RINGS = {0: 2, 1: 3, 2: 4}
+PINS_OF_OUTPUTS = {**PINS_OF_RINGS, 12: 12, 13: 17, 14: 1}
+
+
+def switch(pin):
+    return {"name": f"s{pin}", "type": "GPIO", "pin": pin, "device": "switch"}
 
 
 class Analog(DebuggedTest):
@@ -68,14 +73,28 @@ class Analog(DebuggedTest):
             self.readers.remove(reader)
             reader.stop()
 
-    def await_event(self, reader, **wanted):
-        def came(lines):
-            return any(wanted.items() <= json.loads(line).items() for line in lines)
-        self.assertTrue(reader.wait_for(came, PATIENCE), (wanted, reader.lines[-8:]))
-
     def readings(self, reader, pin):
         told = (json.loads(line) for line in reader.lines)
         return [event["value"] for event in told if event.get("event") == "input" and event.get("sensor") == f"a{pin}"]
+
+
+    def compare_cost_of_samples(self, name, samples):
+        """At most the value in costs.def, including the driver and the sampler."""
+        listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
+        said = next(int(line.split(",")[1].replace("'", "")) for line in listed.splitlines() if line.startswith(f"COST({name},"))
+        place = next(at for known, at in symbols(FIRMWARE).items() if "DriverSampler::sample(" in known)
+        most = 0
+        with self.debugger() as debugger:
+            for _ in range(samples):
+                debugger.run_to(place, lambda: None)
+                back, mode, steps = debugger.register(LINK_REGISTER) & ~1, debugger.mode(), 0
+                while steps < MOST_COUNTED and debugger.register(PC) != back:
+                    debugger.step()
+                    steps += debugger.mode() == mode
+                most = max(most, steps)
+        print(f"\n  {name}: {most}, said {said}")
+        self.assertGreaterEqual(said, most)
+        self.assertLessEqual(said, LOOSEST * most)
 
 
 @unittest.skipUnless(REFERENCE, "its analog inputs are words of the reference board's memory")
@@ -135,20 +154,35 @@ class WithoutConverter(Analog):
 
     @unittest.skipUnless(NAME == "microbit-v2", "that of the other is not up, and looked at no more")
     def test_what_a_converter_that_does_not_answer_costs(self):
-        """At most the value in costs.def, including the driver and the sampler."""
-        listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
-        said = next(int(line.split(",")[1].replace("'", "")) for line in listed.splitlines() if line.startswith("COST(analog,"))
         self.upload(*self.written(OTHER))
-        place = next(at for name, at in symbols(FIRMWARE).items() if "DriverSampler::sample(" in name)
-        with self.debugger() as debugger:
-            debugger.run_to(place, lambda: None)
-            back, mode, steps = debugger.register(LINK_REGISTER) & ~1, debugger.mode(), 0
-            while steps < MOST_COUNTED and debugger.register(PC) != back:
-                debugger.step()
-                steps += debugger.mode() == mode
-        print(f"\n  a voltage that does not come: {steps}, said {said}")
-        self.assertGreaterEqual(said, steps)
-        self.assertLessEqual(said, LOOSEST * steps)
+        self.compare_cost_of_samples("analog", 1)
+
+
+@unittest.skipUnless(NAME == "microbit-v2", "only there can an output be an input, and has the board such parts")
+class OfMicrobit(Analog):
+    def run_with(self, sensors, program):
+        (self.folder / "robot.json").write_text(json.dumps({"board": NAME, "sensors": sensors}))
+        self.upload(*self.written(program))
+
+    def test_an_output_is_let_go_and_pulled_up_for_the_program_that_reads_its_level(self):
+        def configured():
+            return {pin: self.wires.word(GPIO_CONFIGURATION + WORD * bit) for pin, bit in PINS_OF_OUTPUTS.items()}
+        self.status()
+        self.assertEqual(configured(), dict.fromkeys(PINS_OF_OUTPUTS, LOW_OUTPUT))
+        self.run_with([switch(pin) for pin in PINS_OF_OUTPUTS], "".join(f'WHEN s{pin} IS closed DO LOG "it" END\n' for pin in PINS_OF_OUTPUTS))
+        self.assertEqual(configured(), dict.fromkeys(PINS_OF_OUTPUTS, PULLED_UP))
+        self.run_with([switch(2)], 'WHEN s2 IS closed DO LOG "it" END\n')
+        self.assertEqual(configured(), {**dict.fromkeys(PINS_OF_OUTPUTS, LOW_OUTPUT), 2: PULLED_UP})
+
+    def test_what_an_input_costs(self):
+        """The last of the outputs takes longest."""
+        self.run_with([switch(14)], 'WHEN s14 IS closed DO LOG "it" END\n')
+        self.compare_cost_of_samples("input", 2)
+
+    def test_what_a_sample_of_a_part_costs(self):
+        """The logo takes longer, and its two samples differ. QEMU's pin never rises; what a time adds is counted in the listing."""
+        self.run_with([{"name": "logo", "device": "logo"}], 'WHEN logo IS pressed DO LOG "it" END\n')
+        self.compare_cost_of_samples("part", 4)
 
 
 if __name__ == "__main__":

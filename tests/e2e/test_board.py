@@ -10,7 +10,7 @@ import pins
 import rsc
 import stimuli
 from board import FIRMWARE, NAME, REAL_TIME
-from support import INPUTS, OUTPUTS, PROFILE, PROGRAMS, LineReader, RobotTest
+from support import INPUTS, OUTPUTS, PROFILE, PROGRAMS, RobotTest
 from traces import TraceTest
 
 sys.path.append(str(rsc.ROOT / "bench"))
@@ -19,7 +19,6 @@ from counting import symbols  # noqa: E402
 COMPANION = rsc.ROOT / "examples/touch_companion"
 MOST_LATE_US = 20_000
 READINGS_SEED = 475
-PATIENCE = 20
 RAM = 0x1000_0000  # and up; flash is below on each board
 PARTS = PROFILE.get("on_board", {})
 BY_I2C = """{"board": "%s", "actuators": [],
@@ -55,17 +54,7 @@ class EveryBoard(TraceTest):
         self.upload(source, "--config", config)
         for feed in feeds:
             rsc.run("feed", feed, "--port", self.board.port)
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        self.addCleanup(reader.stop)
-        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
-        return wires, reader
-
-    def await_event(self, reader, kind, times=1, **wanted):
-        def found(lines):
-            events = [json.loads(line) for line in lines]
-            return sum(event.get("event") == kind and wanted.items() <= event.items() for event in events) >= times
-
-        self.assertTrue(reader.wait_for(found, PATIENCE), (kind, wanted, reader.lines[-8:]))
+        return wires, self.listen()
 
     def test_it_says_what_it_is(self):
         said = rsc.info(self.board.port)

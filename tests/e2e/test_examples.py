@@ -8,7 +8,7 @@ import examples
 from traces import TraceTest
 
 # Scripts of readings for each example; scripts/soak runs more.
-SHARE = int(os.environ.get("ROBOSYNC_SOAK", "2"))
+SHARE = int(os.environ.get("ROBOSYNC_SOAK", "1"))
 
 
 class Examples(TraceTest):

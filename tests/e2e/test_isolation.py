@@ -11,9 +11,9 @@ from pathlib import Path
 import outputs
 import rsc
 import touched
-from board import FIRMWARE, NAME
+from board import FIRMWARE, NAME, ROOT
 from debugger import INTERPRETER, PC, DebuggedTest, endless_loop
-from support import AT_WILL, LineReader
+from support import AT_WILL, PROGRAMS, LineReader
 from touched import LINE, TAME, WATCHDOG, WILD
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
@@ -255,6 +255,32 @@ class Algorithms(FirmwareTest):
         self.expect(event="fault", thread="skin", cause=OVERRUN, pc=endless_loop())
         self.expect(event="stale", sensor="skin")
         self.others_go_on(stopped=True, priority=LOWERED)
+
+
+class LargeModule(FirmwareTest):
+    """One with more memory than a kilobyte: its region of the MPU is as large as its record in the image says, and no larger."""
+
+    REGION = 10 * 1024
+
+    def test_it_stays_within_it(self):
+        arena = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text())["arena"]
+        begin = int(arena["begin"], 16) + arena["bytes"] - self.REGION
+        robot = json.loads((PROGRAMS / "listening.json").read_text())
+        robot["algorithms"][0]["config"]["words"] = str(PROGRAMS / "listening.words")
+        self.upload((PROGRAMS / "listening.rsl").read_text(), {**robot, "board": NAME})
+        reader = LineReader("feed", *(f"microphone.BANDS_{i}=0" for i in range(1, 5)), "--port", self.board.port,
+                            "--watch", "60s", "--format", "json")
+        try:
+            self.assertTrue(reader.wait_for(lambda lines: any('"channel":"WORD"' in line for line in lines), PATIENCE))
+            with self.debugger() as debugger:
+                debugger.run_to(self.symbols["own_words_process"], lambda: None)
+                debugger.set_register(2, begin - 32)  # an argument that it only reads
+            self.assertTrue(reader.wait_for(lambda lines: any('"event":"fault"' in line for line in lines), PATIENCE))
+        finally:
+            reader.stop()
+        fault, *_ = [event for event in map(json.loads, reader.lines) if event["event"] == "fault"]
+        self.assertEqual((fault["thread"], fault["cause"]), ("voice", NO_ACCESS))
+        self.assertTrue(begin - 32 <= fault["address"] < begin, hex(fault["address"]))
 
 
 SAFETY_PROGRAM = f"""

@@ -11,12 +11,11 @@ import pins
 import rsc
 from board import FIRMWARE, NAME
 from debugger import DebuggedTest
-from support import LineReader
+from support import PATIENCE
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
-PATIENCE = 20
 LINK_REGISTER = 14
 MM_PER_CM = 10
 US_PER_CM = 1 / 0.01715
@@ -58,21 +57,10 @@ class Sonar(DebuggedTest):
         self.upload(self.folder / "sonar.rsl", "--config", self.folder / "sonar.json")
         return self.listen()
 
-    def listen(self):
-        reader = LineReader("monitor", "--port", self.board.port, "--format", "json")
-        self.addCleanup(reader.stop)
-        self.assertTrue(reader.wait_for(lambda lines: lines, PATIENCE))
-        return reader
-
     def distances(self, lines):
         told = (json.loads(line) for line in lines)
         return [None if event["value"] is None else event["value"] / MM_PER_CM for event in told
                 if event.get("event") == "input" and event.get("sensor") == "sonar"]
-
-    def await_event(self, reader, **wanted):
-        def came(lines):
-            return any(wanted.items() <= json.loads(line).items() for line in lines)
-        self.assertTrue(reader.wait_for(came, PATIENCE), (wanted, reader.lines[-8:]))
 
     def await_distance(self, reader, cm, within):
         def came(lines):

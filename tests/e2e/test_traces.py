@@ -45,9 +45,12 @@ class Traces(TraceTest):
         self.assertTrue(all(change["t_us"] % 500_000 == 0 for change in changes))
         last = {change["behavior"]: change for change in changes}
         self.assertTrue(all(change["priority"] == change["base"] for change in last.values()))
-        for seed in range(4):
+        self.check_drawn(4, config)
+
+    def check_drawn(self, count, config):
+        for seed in range(count):
             with self.subTest(seed=seed):
-                program = self.folder / f"adapting{seed}.rsl"
+                program = self.folder / f"drawn{seed}.rsl"
                 text = Generator(seed).program()
                 program.write_text(text)
                 self.check(program, stimuli.drawn(seed, text), config)
@@ -62,12 +65,7 @@ class Traces(TraceTest):
         with_ramps, without = (self.check(PROGRAMS / "priorities.rsl", stimuli.PRIORITIES, *given) for given in ((config,), ()))
         done = [[json.loads(line)["t_us"] for line in lines if '"event":"done"' in line] for lines in (with_ramps, without)]
         self.assertNotEqual(*done)
-        for seed in range(6):
-            with self.subTest(seed=seed):
-                program = self.folder / f"ramps{seed}.rsl"
-                text = Generator(seed).program()
-                program.write_text(text)
-                self.check(program, stimuli.drawn(seed, text), config)
+        self.check_drawn(6, config)
 
     def test_algorithms(self):
         """The firmware's modules, with synthetic recordings: the board's modules run behind its MPU."""
@@ -83,6 +81,21 @@ class Traces(TraceTest):
                 lines = self.check(PROGRAMS / f"{name}.rsl", recording(0), PROGRAMS / f"{name}.json")
                 said = {json.loads(line).get("word") for line in lines if '"event":"command"' in line}
                 self.assertLessEqual(words, said)
+
+    def test_words(self):
+        """own_words works for longer than a tick on a word, so this comes a few milliseconds later on the board, in the same 20 ms."""
+        self.units = stimuli.LISTENING_UNITS
+        lines, expected, errors = self.run_both(PROGRAMS / "listening.rsl", stimuli.words(0), PROGRAMS / "listening.json")
+
+        def words(told):
+            events = (json.loads(line) for line in told)
+            return [(event["t_us"] // 20_000, event["value"]) for event in events
+                    if event["event"] == "input" and event["channel"] == "WORD" and event["value"] is not None]
+        self.assertEqual(words(lines), words(expected), errors)
+        self.assertEqual({word for _, word in words(lines)}, {*stimuli.SPOKEN, "none"})
+
+    def test_the_words_that_it_listens_for_are_those_that_are_said(self):
+        self.assertEqual((PROGRAMS / "listening.words").read_text(), stimuli.words_file())
 
     def test_drawn_programs(self):
         seeds = itertools.islice(filter(self.draw, itertools.count()), 12)

@@ -13,7 +13,8 @@ LINE, WATCHDOG = {"mps2-an386": (0x4000_4000, 0x4000_8000), "b-l475e-iot01a": (0
 if ON_A_BUS:
     SENSORS = [{"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451", "channels": {
         "WILD": {"input": WILD, "range": [0, 10], "rate": "50Hz"}, "TAME": {"input": TAME, "range": [0, 10], "rate": "50Hz"}}}]
-    WILD_IS_TOUCHED, TAME_IS_TOUCHED = "touch WILD > 2", "touch TAME > 2"
+    # The second constant is between a touch and a stronger one, which without it would concern no rule.
+    WILD_IS_TOUCHED, TAME_IS_TOUCHED = "touch WILD > 2 OR touch WILD > 6", "touch TAME > 2"
     TAME_IS_PRESSED, TAME_IS_FREE = "touch TAME > 7", "touch TAME < 2"
 else:
     SENSORS = [{"name": name, "type": "GPIO", "pin": pin, "device": "switch"} for name, pin in zip(("left", "right"), INPUTS)]

@@ -21,6 +21,13 @@ class TraceTest(RobotTest):
     """Runs a program on both with the same readings."""
 
     def check(self, program, readings, config=CONFIG):
+        lines, expected, errors = self.run_both(program, readings, config)
+        self.maxDiff = 4000
+        self.assertEqual(lines, expected, errors)
+        return lines
+
+    def run_both(self, program, readings, config):
+        """(the board's lines, the host's, what rsc said of the board)."""
         image = self.compile(program, config)
         lead_ms = FIRST_LEAD_MS
         for _ in range(ATTEMPTS):
@@ -38,9 +45,7 @@ class TraceTest(RobotTest):
                 break
         self.assertEqual(lost, 0, "this machine is too busy to read the board's trace")
         self.assertGreater(len(expected), len(set(r.at_ms for r in readings)) // 2)
-        self.maxDiff = 4000
-        self.assertEqual(lines, expected, errors)
-        return lines
+        return lines, expected, errors
 
     def board_trace(self, image, scenario, count, until_ms):
         """The board's lines from activation on; expects `count`, then waits briefly for extra ones."""

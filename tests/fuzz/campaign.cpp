@@ -155,7 +155,9 @@ void Campaign::wire() {
                                 .analog = inputs,
                                 .enables = inputs,
                                 .i2c_buses = static_cast<std::uint8_t>(random_.below(3)),
-                                .reserved = {&reserved, 1}};
+                                .reserved = {&reserved, 1},
+                                .spi_buses = static_cast<std::uint8_t>(first % 2),
+                                .selects = inputs};
   const vm::Verdict verdict = policy::judge(accepted_, board);
   if (!verdict.ok()) ++totals_.verdicts[static_cast<std::size_t>(verdict.refusal)];
   compute();

@@ -113,7 +113,7 @@ TEST_CASE("a line without delimiters does not overflow, and the next frame arriv
 TEST_CASE("payload structs have no padding, and fit in a frame") {
   link::ActivateResult result{};
   CHECK(sizeof result == 16);
-  CHECK(sizeof(link::HelloReply) == 92);
+  CHECK(sizeof(link::HelloReply) == 96);
   CHECK(sizeof(link::Status) == 40);
   CHECK(sizeof(link::Fault) <= link::kMaxPayload);
 }

@@ -7,6 +7,7 @@ from changes import Mutant, Suite, run
 
 TESTS = "[#guard_test],[#differential_drive_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
+READS = "runtime-m4/guard/read_pins.cpp"
 MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
 
@@ -23,7 +24,8 @@ MUTANTS = (
     Mutant("letting one go lets all go", GUARD, "halted_ &= ~actuators;", "halted_ = 0;"),
     Mutant("an upload ends a stop for the guard", GUARD, "halted_ = halted;", "halted_ = 0;"),
     Mutant("a program that comes while all is stopped is as it was", GUARD, "  make_halted_safe(kernel_.now());\n", ""),
-    Mutant("a pin that is measured stays let go", GUARD, "board_.take_back(static_cast<std::uint16_t>(std::countr_zero(left)));", ";"),
+    Mutant("a pin that is read stays let go", READS, "board_.take_back(static_cast<std::uint16_t>(std::countr_zero(left)));", ";"),
+    Mutant("an output that a program reads is driven", READS, "policy::is_input(board, pin)", "false"),
     Mutant("the next program leaves on what it does not have", GUARD, "next == nullptr || !drives(*next, slot)",
            "next == nullptr"),
     Mutant("a motor runs on before the next program's rules know", GUARD, " || moves) switch_off(slot);", ") switch_off(slot);"),
@@ -50,7 +52,7 @@ MUTANTS = (
     Mutant("no limit of the rise of a wheel", GUARD, "rise == 0 ? wheel->target", "true ? wheel->target"),
     Mutant("a drive is owned on pins that the board does not drive", GUARD, "if (!policy::can_drive(drive, parameters, board_.pins())) return false;", ""),
     Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n    if (is_on_panel", "    if (is_on_panel"),
-    Mutant("a player is told twice at once", GUARD, "- told) < gap;", "- told) == 0xFFFF;"),
+    Mutant("a player is told twice at once", "runtime-m4/guard/output_guard.hpp", "- told) < gap;", "- told) == 0xFFFF;"),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
            "if (!vm::drives_player(slot.driver)) return;"),
     Mutant("without a program a player plays on", GUARD, "say(ended_player_->pin, 0);",

@@ -390,7 +390,7 @@ TEST_CASE("a program whose words were taught is told where they stand") {
   ears.write("robot.json",
              R"({"algorithms": [{"name": "voice", "module": "own_words", "rate": "20Hz"}]})");
   ears.write("robot.rsl", "WHEN voice WORD IS hello\nDO LOG \"heard hello\"\nEND\n");
-  const companion::TaughtWord word{"hello", {companion::Sample(8)}};
+  const companion::TaughtWord word{"hello", {companion::Sample(8, own_words_frame{})}, 0};
   ears.write("voice.words", companion::write_words({word}));
   ears.upload();
   ears.works("own-words",

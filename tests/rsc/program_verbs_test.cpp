@@ -463,3 +463,21 @@ TEST_CASE("a file that uses itself, or is used by what it uses, is in the progra
     CHECK(ran.out.find("once", first + 1) == std::string::npos);
   }
 }
+
+TEST_CASE("JSON in the place of a program is left alone, and the program is named") {
+  const RobotFolder robot;
+  const std::string wiring = "{board: \"microbit-v2\",\n sensors: []}\n";
+  const std::string file = robot.write("pet.json", wiring);
+  const std::string scenario = robot.write("track.json", R"({"duration": "1s"})");
+  for (const char* const verb : {"check", "fix", "run", "compile"}) {
+    CAPTURE(verb);
+    Outcome outcome = test::rsc({verb, file});
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains("pet.json is the configuration of a robot, not a program: "
+                                     "name the program, such as ") &&
+                                Contains("pet.rsl; both are then checked and mended"));
+    CHECK_THAT(test::rsc({verb, scenario}).err,
+               Contains("track.json is a scenario, not a program"));
+  }
+  CHECK(robot.read("pet.json") == wiring);
+}

@@ -1,5 +1,8 @@
 // rsc replay: what was recorded runs again, to the same commands; and it says where it does not.
+#include <algorithm>
 #include <filesystem>
+#include <sstream>
+#include <utility>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -329,4 +332,195 @@ TEST_CASE("what is no recording is said") {
     CHECK_THAT(outcome.err, Contains("this reading does not fit the program"));
   }
   CHECK(robot.replay(robot.with(R"("sensor":"touch")", R"("sensor":7)")).exit == 1);
+}
+
+namespace {
+
+// The lines of a recording of a robot whose arm SAFETY halts.
+struct Guarded : RobotFolder {
+  Guarded() {
+    write("force.json", R"({
+      "sensors": [{"name": "force", "type": "VIRTUAL", "channels": {"F": {"range": [0, 100], "stale_after": "60s"}}}],
+      "actuators": [{"name": "arm", "device": "servo", "pin": 10}], "safety": {"start": "2s"}})");
+    const std::string guarded = write("force.rsl", R"(SAFETY squeeze
+  WHEN force F > 50
+  DO
+    STOP arm
+    ALERT "squeezed at", force F
+  RESUME WHEN force F < 20 FOR 100ms
+END
+SAFETY crush
+  WHEN force F > 95
+  DO STOP arm
+END
+)");
+    const std::string scenario = write("visit.json", R"({"duration": "5s", "stimuli": [
+      {"at": "0s", "sensor": "force", "value": 1}, {"at": "1s", "sensor": "force", "value": 90},
+      {"at": "2s", "sensor": "force", "value": 3}, {"at": "3s", "sensor": "force", "value": 60}]})");
+    REQUIRE(test::rsc({"run", guarded, "--config", path("force.json"), "--scenario", scenario,
+                       "--record", path("r.jsonl")})
+                .exit == 0);
+    for (std::istringstream text(read("r.jsonl")); std::getline(text, lines.emplace_back());) {
+    }
+    lines.pop_back();
+  }
+  // The readings at this time are told so much later, as by a step that had to wait.
+  void tell_later(std::uint64_t at_us, std::uint64_t by_us) {
+    for (std::string& line : lines) {
+      const json event = json::parse(line);
+      if (event.value("t_us", std::uint64_t{1}) != at_us || event.at("event") != "input") continue;
+      line = fmt::format(R"({{"t_us":{},)", at_us + by_us) + line.substr(line.find(R"("step")"));
+    }
+    const auto time_of = [](const std::string& line) { return json::parse(line).value("t_us", 0); };
+    std::ranges::stable_sort(lines, {}, time_of);  // the image has no time
+  }
+  // The first line with all of these parts.
+  [[nodiscard]] std::size_t line_with(const std::string& part, const std::string& more) const {
+    const auto found = std::ranges::find_if(lines, [&](const std::string& line) {
+      return line.find(part) != std::string::npos && line.find(more) != std::string::npos;
+    });
+    REQUIRE(found != lines.end());
+    return static_cast<std::size_t>(found - lines.begin());
+  }
+  [[nodiscard]] Outcome replay() const {
+    std::string text;
+    for (const std::string& line : lines)
+      text += line + "\n";
+    return test::rsc({"replay", write("changed.jsonl", text), "--format", "json"});
+  }
+
+  std::vector<std::string> lines;
+};
+
+json program_of(const Outcome& outcome) {
+  return json::parse(outcome.out).at("programs").at(0);
+}
+
+}  // namespace
+
+TEST_CASE("SAFETY may trip some milliseconds before the step that tells its reading, not more") {
+  for (const auto& [by_us, exit] : {std::pair{1'000, 0}, {20'000, 0}, {21'000, 1}}) {
+    Guarded robot;
+    robot.tell_later(1'000'000, static_cast<std::uint64_t>(by_us));
+    const Outcome outcome = robot.replay();
+    CAPTURE(by_us, outcome.out, outcome.err);
+    CHECK(outcome.exit == exit);
+    if (exit != 0) continue;
+    CHECK(program_of(outcome).at("early") == 3);  // trip, halt and alert
+    CHECK(program_of(outcome).at("earliest_us") == by_us);
+    CHECK(program_of(outcome).at("late") == 0);
+  }
+  // One that lets go after a while does so from the reading on, too.
+  Guarded robot;
+  robot.tell_later(2'000'000, 2'000);
+  Outcome outcome = robot.replay();
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK(program_of(outcome).at("early") == 2);  // resume and release
+  outcome = test::rsc({"replay", robot.path("changed.jsonl")});
+  CHECK_THAT(outcome.out,
+             Contains("2 of the events were recorded earlier than in the replay, by at most 2 ms"));
+}
+
+TEST_CASE("a first reading that its step tells late trips no rule of the replay") {
+  for (const auto& [by_us, exit] : {std::pair{1'000, 0}, {5'000, 0}, {20'000, 0}, {21'000, 1}}) {
+    Guarded robot;
+    robot.tell_later(0, static_cast<std::uint64_t>(by_us));
+    const Outcome outcome = robot.replay();
+    CAPTURE(by_us, outcome.out, outcome.err);
+    CHECK(outcome.exit == exit);
+  }
+}
+
+TEST_CASE(
+    "a trip that is missing, additional or another one is a difference, also beside late steps") {
+  for (const std::uint64_t late_us : {0, 1'000}) {
+    Guarded missing;
+    missing.tell_later(1'000'000, late_us);
+    missing.lines.erase(missing.lines.begin() + static_cast<std::ptrdiff_t>(missing.line_with(
+                                                    R"("trip")", R"("t_us":1000000,)")));
+    Guarded more;
+    more.tell_later(1'000'000, late_us);
+    const std::size_t first = more.line_with(R"("input")", R"("value":90)");
+    more.lines.insert(more.lines.begin() + static_cast<std::ptrdiff_t>(first),
+                      R"({"t_us":1000000,"step":1,"event":"trip","rule":2,"line":8})");
+    Guarded other;
+    other.tell_later(1'000'000, late_us);
+    std::string& trip = other.lines[other.line_with(R"("trip")", R"("t_us":1000000,)")];
+    trip = R"({"t_us":1000000,"step":1,"event":"trip","rule":2,"line":8})";
+    for (const Guarded* const robot : {&missing, &more, &other}) {
+      const Outcome outcome = robot->replay();
+      CAPTURE(late_us, outcome.out, outcome.err);
+      CHECK(outcome.exit == 1);
+      CHECK_FALSE(program_of(outcome).at("difference").is_null());
+    }
+  }
+}
+
+TEST_CASE("a time that was measured may differ as much as events were late") {
+  const RobotFolder robot;
+  const std::string program = robot.write("time.rsl", R"(TIMER trial
+REMEMBER took = 0s
+WHEN touch LEVEL > 2 FOR 200ms DO
+  SET took TO trial
+  LOG "touch", touch LEVEL, "at", trial
+END
+EVERY 1s DO LOG "so far", trial END
+)");
+  const std::string visit = robot.write("visit.json", R"({"duration": "3s", "stimuli": [
+    {"at": "0s", "sensor": "touch", "value": 0}, {"at": "1.5s", "sensor": "touch", "value": 5}]})");
+  REQUIRE(test::rsc({"run", program, "--config", robot.path("robot.json"), "--scenario", visit,
+                     "--record", robot.path("r.jsonl")})
+              .exit == 0);
+  const auto changed = [&](const std::vector<std::pair<std::string, std::string>>& all) {
+    std::string text = robot.read("r.jsonl");
+    for (const auto& [from, to] : all) {
+      CAPTURE(from, text);
+      REQUIRE(text.find(from) != std::string::npos);
+      for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+        text.replace(at, from.size(), to);
+    }
+    return test::rsc({"replay", robot.write("changed.jsonl", text)});
+  };
+  using Changes = std::vector<std::pair<std::string, std::string>>;
+  const Changes late = {{R"("t_us":1700000)", R"("t_us":1702000)"},
+                        {R"("t_us":1701000)", R"("t_us":1703000)"}};
+  Changes as_measured = late;
+  as_measured.insert(as_measured.end(), {{"at 1.7s", "at 1.702s"},
+                                         {"[5,1.7]", "[5,1.702]"},
+                                         {R"("took","value":1.7)", R"("took","value":1.702)"}});
+  const Outcome outcome = changed(as_measured);
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  // Without a late event, by more than it was late, and in what is no time, it is a difference.
+  CHECK(changed({{"at 1.7s", "at 1.702s"}, {"[5,1.7]", "[5,1.702]"}}).exit == 1);
+  Changes too_much = late;
+  too_much.insert(too_much.end(), {{"at 1.7s", "at 1.703s"}, {"[5,1.7]", "[5,1.703]"}});
+  CHECK(changed(too_much).exit == 1);
+  Changes wrong = as_measured;
+  wrong.insert(wrong.end(), {{"touch 5 at", "touch 6 at"}, {"[5,1.702]", "[6,1.702]"}});
+  CHECK(changed(wrong).exit == 1);
+  Changes only_text = late;
+  only_text.emplace_back("at 1.7s", "at 1.702s");  // the text belongs to its values
+  CHECK(changed(only_text).exit == 1);
+}
+
+TEST_CASE("a KEPT number begins as recorded, whatever the program in the place declares") {
+  const RobotFolder robot;
+  robot.write("numbers.json", R"({"kept": {"visits": 4}})");
+  const auto text = [](int begin, const char* more) {
+    return fmt::format(
+        "REMEMBER visits = {} KEPT\nREMEMBER other = {} KEPT\nAT START DO\n  "
+        "RAISE visits BY 1\n  LOG \"visit\", visits\nEND\n{}",
+        begin, begin, more);
+  };
+  REQUIRE(
+      test::rsc({"run", robot.write("old.rsl", text(0, "")), "--kept", robot.path("numbers.json"),
+                 "--duration", "1s", "--record", robot.path("r.jsonl")})
+          .exit == 0);
+  const Outcome outcome = test::rsc({"replay", robot.path("r.jsonl"), "--program",
+                                     robot.write("new.rsl", text(7, "# the same\n"))});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(robot.read("r.jsonl"), Contains("visit 5"));
 }

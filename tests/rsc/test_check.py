@@ -191,6 +191,26 @@ class Check(unittest.TestCase):
         self.assertEqual(done.returncode, 0)
         self.assertEqual((self.folder / "robot.rsl").read_text(), RIGHT.replace(" DO", "\nDO"))
 
+    def test_fix_says_how_many_likely_fixes_there_are(self):
+        program = self.write("robot.rsl", RIGHT.replace("> 3", "> .3"))
+        self.assertIn("0 fixed, 1 more with --likely; 1 error", self.fix(program).stdout)
+        self.assertNotIn("more with", self.fix("--likely", program).stdout)
+
+    def test_fix_does_not_ask_about_what_brings_a_new_error_to_its_line(self):
+        text = 'als touch IS high\nDO LOG "a"\nEND\n'  # WHEN in front of it gives the unknown sensor `als`
+        program = self.write("robot.rsl", text)
+        self.assertIn("`WHEN` is missing", self.check(program).stderr)
+        done = self.fix("--likely", program, text="y\n" * 9)
+        self.assertNotIn("[y/N]", done.stdout)
+        self.assertEqual((self.folder / "robot.rsl").read_text(), text)
+
+    def test_fix_makes_right_programs_of_those_of_other_languages(self):
+        for foreign in ("on touch LEVEL > 3:\n", "WENN touch LEVEL > 3\nDO\n", "forever:\n"):
+            program = self.write("robot.rsl", foreign + '  LOG "a"\nEND\n')
+            self.fix("--likely", program, text="y\n" * 9)
+            done = self.check(program)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), foreign)
+
     def test_fix_leaves_a_right_program_alone(self):
         program = self.write("robot.rsl", RIGHT)
         before = (self.folder / "robot.rsl").stat().st_mtime_ns

@@ -476,6 +476,25 @@ TEST_CASE("run shows what power a motor is given where the program says more tha
   CHECK_THAT(outcome.out, Contains("wheel RUN TO -40%\n") && Contains("shown RUN TO 30%\n"));
 }
 
+TEST_CASE("a SAFETY rule that trips is named, also one of a module and a LIMIT that is one") {
+  const Folder folder;
+  folder.write("robot.json", R"({
+    "sensors": [{"name": "arm", "type": "VIRTUAL", "channels": {"FORCE": {"unit": "N", "range": [0, 50]}}}],
+    "actuators": [{"name": "arm", "type": "PWM", "pin": 10, "device": "servo"}]})");
+  folder.write("hands.rsl",
+               "safety pinched\n  WHEN arm FORCE > 20N\n  DO STOP arm\n"
+               "  RESUME WHEN arm FORCE < 5N\nEND\n");
+  const std::string program = folder.write(
+      "robot.rsl", "USE \"hands.rsl\"\n\nLIMIT arm FORCE TO 15N\nAT START DO LOG 1 END\n");
+  const std::string scenario = folder.write("visit.json", R"({"duration": "1s", "stimuli": [
+      {"at": "0s", "sensor": "arm", "value": "1N"}, {"at": "0.5s", "sensor": "arm", "value": "30N"}]})");
+  const Outcome outcome = test::rsc({"run", program, "--scenario", scenario});
+  CAPTURE(outcome.err);
+  CHECK_THAT(outcome.out, Contains("SAFETY: safety rule LIMIT arm at line 3 trips\n") &&
+                              Contains("hands.rsl:1 trips\n") &&
+                              Contains("SAFETY: safety rule pinched at "));
+}
+
 TEST_CASE("run takes the words of a channel, and shows what safety does in words") {
   const TestFolder robot("");
   const std::string scenario = robot.write("visit.json", R"({"duration": "4s", "stimuli": [
@@ -487,9 +506,9 @@ TEST_CASE("run takes the words of a channel, and shows what safety does in words
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   for (const char* const line :
-       {"1.000 s  button POSITION = pressed\n", "SAFETY: safety rule at line 4 trips\n",
+       {"1.000 s  button POSITION = pressed\n", "SAFETY: safety rule stop_button at line 4 trips\n",
         "left_arm is halted\n", "ALERT: Stopped by a person\n",
-        "SAFETY: safety rule at line 4 lets go\n", "right_arm may move again\n",
+        "SAFETY: safety rule stop_button at line 4 lets go\n", "right_arm may move again\n",
         "left_arm MOVE SLOWLY TO 20"}) {
     CHECK_THAT(outcome.out, Contains(line));
   }

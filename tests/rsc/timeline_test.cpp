@@ -125,22 +125,42 @@ TEST_CASE("a command for lights has the picture that they show; a face without h
   const Folder folder;
   folder.write("robot.json", R"({"board": "microbit-v2", "actuators": [
     {"name": "face", "device": "lights"}, {"name": "voice", "device": "beeper"},
-    {"name": "display", "type": "VIRTUAL", "device": "face"}]})");
+    {"name": "display", "type": "VIRTUAL", "device": "face"}],
+    "pictures": {"robot": ["#...#", "#####", "#.#.#", "#####", ".#.#."]}})");
   const std::string program = folder.write("robot.rsl",
                                            "AT START DO\n  SHOW face smile\n  PLAY voice hello\n"
                                            "  SHOW display happy\n  WAIT 1s\n  BLINK face\n"
-                                           "  WAIT 1s\n  SHOW face cross FOR 1s\nEND\n");
+                                           "  WAIT 1s\n  SHOW face cross FOR 1s\n  THEN\n"
+                                           "  SHOW face 0\n  WAIT 1s\n  SHOW face robot\nEND\n");
   const json run = run_of_page(folder, program);
   const json& face = run.at("actuators").at(0).at("bars");
-  REQUIRE(face.size() == 3);
+  REQUIRE(face.size() == 5);
   CHECK(run.at("pictures").at(face.at(0).at("picture").get<std::size_t>()) ==
         json::parse(R"([".....", ".#.#.", ".....", "#...#", ".###."])"));
   CHECK(face.at(0).at("text") == "SHOW smile");
   CHECK_FALSE(face.at(1).contains("picture"));
   CHECK(run.at("pictures").at(face.at(2).at("picture").get<std::size_t>()) ==
         json::parse(R"(["#...#", ".#.#.", "..#..", ".#.#.", "#...#"])"));
+  CHECK(run.at("pictures").at(face.at(3).at("picture").get<std::size_t>()) ==
+        json::parse(R"([".###.", ".#.#.", ".#.#.", ".#.#.", ".###."])"));
+  CHECK(face.at(3).at("text") == "SHOW TO 0");
+  CHECK(face.at(3).contains("until"));  // not a power of 0
+  CHECK(run.at("pictures").at(face.at(4).at("picture").get<std::size_t>()) ==
+        json::parse(R"(["#...#", "#####", "#.#.#", "#####", ".#.#."])"));
   CHECK_FALSE(run.at("actuators").at(1).at("bars").at(0).contains("picture"));
   CHECK_FALSE(run.at("actuators").at(2).at("bars").at(0).contains("picture"));
+}
+
+TEST_CASE("a strip of lights shows colours, not pictures") {
+  const Folder folder;
+  folder.write("robot.json", R"({"board": "microbit-v2", "actuators": [
+    {"name": "eyes", "pin": 0, "device": "ws2812_strip", "lights": 8}]})");
+  const std::string program =
+      folder.write("robot.rsl", "AT START DO\n  LIGHT eyes red\n  WAIT 1s\nEND\n");
+  const json bars = run_of_page(folder, program).at("actuators").at(0).at("bars");
+  REQUIRE(bars.size() == 1);
+  CHECK(bars.at(0).at("text") == "LIGHT red");
+  CHECK_FALSE(bars.at(0).contains("picture"));
 }
 
 TEST_CASE("the way of a drive is its bar, which ends with the power of its motors") {
@@ -175,6 +195,8 @@ TEST_CASE("who was denied is told by whom, and what SAFETY did from when to when
   REQUIRE(page.run_of.at("safety").size() == 1);
   CHECK(page.run_of.at("safety").at(0).at("from") == 4'000'000);
   CHECK(page.run_of.at("safety").at(0).at("to") == 6'000'000);
+  const auto rule = page.run_of.at("safety").at(0).at("rule").get<std::size_t>();
+  CHECK(page.run_of.at("rules").at(rule).at("name") == "line 6 (guard)");
 }
 
 TEST_CASE("a sensor has its points, its unit, and what rules and bands compare it with") {

@@ -206,6 +206,14 @@ TEST_CASE("safety and waits in words") {
   const std::uint16_t guard = image.behaviors[0].first_rule;
   CHECK(remembered(event(EventKind::trip, guard)) == "SAFETY: safety rule at line 4 trips");
   CHECK(remembered(event(EventKind::resume, guard)) == "SAFETY: safety rule at line 4 lets go");
+  const auto named = [&](std::string name) {
+    tool::Origin origin;
+    origin.safety.resize(image.rules.size());
+    origin.safety[guard] = std::move(name);
+    return tool::trace_line(event(EventKind::trip, guard), {&image, {}, &origin});
+  };
+  CHECK_THAT(named("pinched"), Catch::EndsWith("SAFETY: safety rule pinched at line 4 trips"));
+  CHECK_THAT(named(""), Catch::EndsWith("SAFETY: safety rule at line 4 trips"));
   const std::uint16_t rule = image.behaviors[1].first_rule;
   CHECK_THAT(remembered(event(EventKind::wait, rule)), Catch::EndsWith(" waits"));
   CHECK_THAT(remembered(event(EventKind::go_on, rule)), Catch::EndsWith(" goes on"));
@@ -319,6 +327,20 @@ TEST_CASE("a sensor whose voltage is not measured is told of with its pin") {
       json::parse(tool::trace_json(event(EventKind::silent, 0, 0, {3}), {&grip.image(), {}}));
   CHECK(told.at("pin") == 45);
   CHECK_FALSE((told.contains("address") || told.contains("bus")));
+}
+
+TEST_CASE("a part on SPI that does not answer is told of with its bus and its select pin") {
+  const compiler::Result result = compiler::compile(
+      {"robot.rsl", "WHEN knob LEVEL > 20% DO LOG \"up\" END\n"},
+      {"robot.json", R"({"sensors": [{"name": "knob", "device": "mcp3008", "pin": 37}]})"});
+  REQUIRE_FALSE(result.image.empty());
+  const tool::Program knob{result.image, "robot.rsl", tool::board_memory(), {}};
+  CHECK(
+      tool::trace_line(event(EventKind::silent, 0, 0, {3}), {&knob.image(), {}}) ==
+      "   1.020 s  knob on spi bus 0, select pin 37, does not answer (3 failed transfers so far)");
+  const json told =
+      json::parse(tool::trace_json(event(EventKind::silent, 0, 0, {3}), {&knob.image(), {}}));
+  CHECK((told.at("bus") == 0 && told.at("pin") == 37 && !told.contains("address")));
 }
 
 TEST_CASE("a microphone that hears nothing is told of without a place") {

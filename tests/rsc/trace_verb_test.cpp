@@ -169,10 +169,14 @@ TEST_CASE("a trace as CSV says all that the trace says") {
   REQUIRE(table.rows.size() == trace.lines.size());
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     json left = trace.lines[i];
+    CHECK(table.rows[i].cells.back().empty() == left.contains("t_us"));
     for (std::size_t c = 0; c < table.columns.cells.size(); ++c) {
       const std::string& name = table.columns.cells[c];
       const std::string& cell = table.rows[i].cells[c];
-      if (name == "program") {
+      if (name == "more") {
+        if (!cell.empty()) CHECK(json::parse(cell) == left);
+        if (!cell.empty()) left.clear();
+      } else if (name == "program") {
         CHECK(cell == (i <= trace.lines.size() / 2 ? "1" : "2"));
       } else if (left.contains(name)) {
         const json& value = left[name];
@@ -184,6 +188,48 @@ TEST_CASE("a trace as CSV says all that the trace says") {
     }
     CHECK(left.empty());
   }
+}
+
+TEST_CASE("a trace as CSV has the same columns for every trace, and one for each key of an event") {
+  const Trace trace;
+  const auto header_of = [](const std::string& csv) { return csv.substr(0, csv.find("\r\n")); };
+  const std::string header = header_of(trace.converted("csv"));
+  CHECK_THAT(header, Catch::StartsWith("program,t_us,step,event,") && Catch::EndsWith(",more"));
+  const std::string one =
+      trace.write("one.jsonl", R"({"t_us":0,"step":0,"event":"activated","seed":1})"
+                               "\n");
+  CHECK(header_of(test::rsc({"trace", "convert", one, "--to", "csv"}).out) == header);
+  const std::string keys = "," + header + ",";
+  std::vector<std::string> expected = {"safety", "behavior", "why", "trigger", "echo"};
+  for (const json& line : trace.lines)
+    for (const auto& [key, value] : line.items())
+      if (line.contains("t_us")) expected.push_back(key);
+#define PARAM(name, spelling, doc) expected.emplace_back(#name);
+#include "vm/params.def"
+#undef PARAM
+#define EVENT(name, number, subject, object, values, doc) expected.emplace_back(values);
+#include "link/events.def"
+#undef EVENT
+  for (std::string key : expected) {
+    if (key.ends_with('_')) key.pop_back();  // FOR
+    if (key.empty() || key == "args" || key == "word,params") continue;
+    CAPTURE(key);
+    CHECK_THAT(keys, Contains("," + key + ","));
+  }
+  // A key that no column has is not lost.
+  const std::string odd = trace.write("odd.jsonl", R"({"event":"board","program":7,"more":1})"
+                                                   "\n");
+  CHECK_THAT(test::rsc({"trace", "convert", odd, "--to", "csv"}).out,
+             Contains(R"(,"{""program"":7,""more"":1}")"));
+}
+
+TEST_CASE("a SAFETY rule that trips or lets go has its name in the trace and in CSV") {
+  const Trace trace;
+  for (const json& line : trace.lines) {
+    const bool is_safety = line.at("event") == "trip" || line.at("event") == "resume";
+    CHECK(line.value("safety", "") == (is_safety ? "guard" : ""));
+  }
+  CHECK_THAT(trace.converted("csv"), Contains(",guard,"));
 }
 
 TEST_CASE("a trace as VCD is well formed, and says when what began and ended") {

@@ -176,3 +176,20 @@ TEST_CASE("the same port twice, under whatever name, is wrong usage, and nothing
   CHECK(upload_to({"tcp:localhost:1", "tcp:localhost:1"}, device.program).exit == 2);
   CHECK(running_at(device).empty());
 }
+
+TEST_CASE("a program with a robot's name is not given to several robots, but --anyway") {
+  const Device one, two;
+  json robot = json::parse(test::kRobot);
+  robot["name"] = "ada";
+  const std::string config = one.write("ada.json", robot.dump());
+  Outcome outcome = upload_to({one.port, two.port}, one.program, {"--config", config});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit == 2);
+  CHECK_THAT(outcome.err, Contains("is for the robot \"ada\"") && Contains("2 robots") &&
+                              Contains("--config") && Contains("Nothing was sent"));
+  CHECK(running_at(one).empty());
+  CHECK(running_at(two).empty());
+  CHECK(upload_to({one.port, two.port}, one.program, {"--config", config, "--anyway"}).exit == 0);
+  CHECK(upload_to({one.port}, one.program, {"--config", config}).exit == 0);
+  CHECK(running_at(two) == running_at(one));
+}

@@ -23,12 +23,14 @@ using test::Outcome;
 namespace {
 
 TaughtWord word(const std::string& name, std::size_t samples, std::mt19937& random) {
-  TaughtWord result{name, {}};
+  TaughtWord result{name, {}, static_cast<std::uint32_t>(random() % 551)};
   for (std::size_t i = 0; i < samples; ++i) {
-    companion::Sample& sample = result.samples.emplace_back(8 + random() % 118);
-    for (companion::Levels& levels : sample)
-      for (std::uint8_t& level : levels)
-        level = static_cast<std::uint8_t>(random());
+    const std::size_t frames =
+        companion::kLeastFrames + random() % (companion::kMostFrames - companion::kLeastFrames + 1);
+    companion::Sample& sample = result.samples.emplace_back(frames, own_words_frame{});
+    for (own_words_frame& frame : sample)
+      for (std::uint32_t& value : frame.values)
+        value = static_cast<std::uint32_t>(random()) & 0x3FFF'FFFFU;
   }
   return result;
 }
@@ -43,7 +45,14 @@ std::string file_of(const std::vector<std::string>& names) {
 
 bool same(const std::vector<TaughtWord>& a, const std::vector<TaughtWord>& b) {
   return std::ranges::equal(a, b, [](const TaughtWord& one, const TaughtWord& other) {
-    return one.name == other.name && one.samples == other.samples;
+    const auto alike = [](const own_words_frame& a_frame, const own_words_frame& b_frame) {
+      return std::ranges::equal(a_frame.values, b_frame.values);
+    };
+    return one.name == other.name && one.most == other.most &&
+           std::ranges::equal(one.samples, other.samples,
+                              [&](const companion::Sample& x, const companion::Sample& y) {
+                                return std::ranges::equal(x, y, alike);
+                              });
   });
 }
 
@@ -136,7 +145,7 @@ TEST_CASE("whatever a text is, its words are words") {
   const std::string text = file_of({"hello", "stop"});
   const std::string body = text.substr(0, text.find("sum "));
   const std::string parts[] = {"word ", "sample ", "sum ", "\n", "8",
-                               "125",   "hello",   "a0",   " ",  "robosync words 1\n"};
+                               "92",    "hello",   "o0",   " ",  "robosync words 2\n"};
   int understood = 0;
   for (int i = 0; i < 3000; ++i) {
     std::string changed = body;
@@ -202,6 +211,83 @@ TEST_CASE("words that are not there, or no words, are one error") {
   std::filesystem::remove(robot.path("my.words"));
   REQUIRE(mkfifo(robot.path("my.words").c_str(), 0600) == 0);
   says("is not a file");
+}
+
+TEST_CASE(
+    "words that an earlier version was taught are one error, which says to teach them again") {
+  const Taught robot;
+  robot.write("my.words", companion::with_sum("robosync words 1\nword hello\n"));
+  const Outcome outcome = test::rsc({"check", robot.program});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("earlier version of RoboSync: teach them again"));
+  CHECK_THAT(outcome.out, Contains("1 error"));
+}
+
+// ---- on the board
+
+constexpr const char* kEars = R"({%s
+  "sensors": [{"name": "microphone", "type": "VIRTUAL", "device": "microphone"}],
+  "actuators": [{"name": "speaker", "type": "VIRTUAL", "device": "speaker"}],
+  "algorithms": [{"name": "voice", "module": "own_words", "input": "microphone",
+                  "config": {"words": "my.words"}%s}]
+})";
+
+std::string listens(const std::string& first, const std::string& last = "") {
+  std::string text = kEars;
+  text.replace(text.find("%s"), 2, first);
+  text.replace(text.find("%s"), 2, last);
+  return text;
+}
+
+TEST_CASE("a robot with a microphone listens itself, unless robot.json says otherwise") {
+  const Taught robot;
+  robot.write("my.words", file_of({"hello", "stop"}));
+  const auto dumped = [&] {
+    REQUIRE(test::rsc({"compile", robot.program, "-o", robot.path("robot.rsb")}).exit == 0);
+    return test::rsc({"dump", robot.path("robot.rsb")}).out;
+  };
+  robot.write("robot.json", listens(""));
+  CHECK_THAT(dumped(), Contains("voice: own_words of channel 0 on") && Contains("BANDS_4") &&
+                           Contains("labels none | hello | stop"));
+  CHECK_THAT(robot.teach({"voice", "--list"}).out, Contains("[--list]"));
+  CHECK(test::rsc({"companion", "--config", robot.path("robot.json"), "--port", "none"}).exit == 1);
+  robot.write("robot.json", listens("", R"(, "on": "companion")"));
+  CHECK_THAT(dumped(), !Contains("own_words of channel") && !Contains("BANDS_4"));
+}
+
+TEST_CASE("a robot that cannot listen itself, or to so much, is told what can") {
+  const Taught robot;
+  const std::string elsewhere = "`\"on\": \"companion\"` lets a computer beside the robot listen";
+  const auto says = [&](const std::string& why) {
+    const Outcome outcome = test::rsc({"check", robot.program});
+    INFO(outcome.err << outcome.out);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains(why) && Contains(elsewhere));
+    CHECK_THAT(outcome.out, Contains("1 error"));
+  };
+  robot.write("my.words", file_of({"hello"}));
+  robot.write("robot.json", R"({"board": "mps2-an386",
+    "actuators": [{"name": "speaker", "type": "VIRTUAL", "device": "speaker"}],
+    "algorithms": [{"name": "voice", "module": "own_words", "input": "microphone",
+                    "config": {"words": "my.words"}, "on": "board"}]})");
+  says("there is no sensor `microphone`");
+  robot.write("robot.json", R"({
+    "sensors": [{"name": "pad", "type": "VIRTUAL", "channels": {"FORCE": {"range": [0, 20]}}}],
+    "actuators": [{"name": "speaker", "type": "VIRTUAL", "device": "speaker"}],
+    "algorithms": [{"name": "voice", "module": "own_words", "input": "pad",
+                    "config": {"words": "my.words"}, "on": "board"}]})");
+  says("`own_words` reads the spectrum of a microphone, but `pad` has none");
+  std::mt19937 random(4);
+  std::vector<TaughtWord> words;
+  while (words.size() < 9) {
+    words.push_back(word("w" + std::to_string(words.size()), 3, random));
+    for (companion::Sample& sample : words.back().samples)
+      sample.resize(companion::kMostFrames);
+  }
+  words.front().name = "hello";
+  robot.write("my.words", write_words(words));
+  robot.write("robot.json", listens(""));
+  says("`voice` was taught 9 words, which take 9963 numbers; the board holds 8192");
 }
 
 TEST_CASE("the file is called like the algorithm, unless robot.json says otherwise") {

@@ -10,7 +10,7 @@ namespace robosync {
 
 struct RuntimePeer {
   // In the next step all rules of a behaviour are evaluated when one of them is concerned, as in
-  // its first step, and no turn takes the fast path for a single rule. This must make no difference. SAFETY rules are
+  // its first step, and save_no_work() holds. This must make no difference. SAFETY rules are
   // evaluated by the safety thread, never by a step.
   static void concern_all(Runtime& runtime) {
     auto all = ~layers::BehaviorMask{0};
@@ -18,8 +18,12 @@ struct RuntimePeer {
     layers::ProcessingLayer& processing = runtime.shared_.processing;
     processing.untouched_ = all;
     processing.untouched_inputs_ = ~layers::InputMask{0};
-    processing.takes_whole_turns_ = true;
+    save_no_work(runtime);
   }
+
+  // From now on each new reading concerns the rules that read it, whatever its value, and no turn takes the fast path for
+  // a single rule. This must make no difference.
+  static void save_no_work(Runtime& runtime) { runtime.shared_.processing.saves_no_work_ = true; }
 
   // The value of an input in the last step.
   static vm::Value value(const Runtime& runtime, std::uint8_t input) {

@@ -32,7 +32,7 @@ link::FeedError Rig::feed(std::uint8_t channel, int units, std::uint64_t at_ms) 
 }
 
 link::FeedError Rig::feed_raw(std::uint8_t channel, vm::Value thousandths, std::uint64_t at_ms) {
-  return runtime.feed({.channel = channel, .at_us = at_ms * 1000, .value = thousandths}).error;
+  return runtime.enqueue({.channel = channel, .at_us = at_ms * 1000, .value = thousandths}).error;
 }
 
 kernel::Thread& Rig::thread(std::string_view name) {

@@ -56,14 +56,26 @@ public:
     }
     return acknowledges;
   }
+  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
+                    std::span<std::byte> in) override {
+    return on_spi && on_spi(bus, select, out, in);
+  }
+  void spi_open(std::uint8_t bus, std::uint16_t select) override {
+    if (on_spi_pins) on_spi_pins();
+    opened.emplace_back(bus, select);
+  }
+  void spi_close() override {
+    if (!opened.empty() && on_spi_pins) on_spi_pins();
+    opened.clear();
+  }
   bool i2c_select(std::uint8_t bus, std::uint8_t address,
                   std::span<const std::byte> page) override {
     return i2c_transfer(bus, address, page, {});
   }
   boards::BusState buses() const override { return bus_state; }
-  bool i2c_asks_ahead() const override { return asks_ahead; }
-  void i2c_ask(bool ahead) override { asked_ahead = ahead; }
-  bool i2c_busy() const override { return busy && busy(); }
+  bool buses_ask_ahead() const override { return asks_ahead; }
+  void ask_buses(bool ahead) override { asked_ahead = ahead; }
+  bool buses_busy() const override { return busy && busy(); }
   bool input(std::uint16_t pin) const override { return level(pin); }
   void ping(std::uint16_t trigger, std::uint16_t echo) override {
     pings.emplace_back(trigger, echo);
@@ -72,14 +84,26 @@ public:
     ++takes;
     return echo_us ? echo_us(echo) : 0;
   }
+  bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                  boards::Turned& turned) override {
+    return edges_of && edges_of(number, a, b, most, turned);
+  }
+  void end_edges(unsigned number) override { ended_edges.push_back(number); }
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override {
     const auto found = voltage_of ? voltage_of(pin) : std::nullopt;
     voltage = found.value_or(0);
     return found.has_value();
   }
+  bool measure(boards::Part part, std::int32_t& raw) override {
+    return measure_of && measure_of(part, raw);
+  }
   void listen(bool on) override { listened.push_back(on); }
   bool hear(boards::SoundBlock sound) override { return sound_of && sound_of(sound); }
-  void let_go(std::uint16_t pin) override { handed.emplace_back(pin, true); }
+  void let_go(std::uint16_t pin, boards::Reads what) override {
+    if (on_let_go) on_let_go(pin);
+    handed.emplace_back(pin, true);
+    read[pin] = what;
+  }
   void take_back(std::uint16_t pin) override { handed.emplace_back(pin, false); }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override {
     if (on_pin) on_pin();
@@ -122,6 +146,12 @@ public:
   std::function<bool(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                      std::span<std::byte> in)>
       on_bus;  // … and instead of on_transfer
+  std::function<bool(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
+                     std::span<std::byte> in)>
+      on_spi;
+  std::vector<std::pair<std::uint8_t, std::uint16_t>>
+      opened;  // the SPI bus has its pins: select pins
+  std::function<void()> on_spi_pins;
   bool asks_ahead = false, asked_ahead = false;
   std::function<bool()> busy;
   boards::BusState bus_state;
@@ -129,9 +159,16 @@ public:
   std::vector<std::pair<std::uint16_t, std::uint16_t>> pings;  // trigger and echo, all
   std::function<std::uint32_t(std::uint16_t echo)> echo_us;
   unsigned takes = 0;
+  std::function<bool(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                     boards::Turned& turned)>
+      edges_of;
+  std::vector<unsigned> ended_edges;  // all
   std::function<std::optional<std::uint16_t>(std::uint16_t pin)> voltage_of;
   std::function<bool(boards::SoundBlock)> sound_of;
-  std::vector<bool> listened;                          // all
+  std::vector<bool> listened;  // all
+  std::function<bool(boards::Part part, std::int32_t& raw)> measure_of;
+  std::function<void(std::uint16_t pin)> on_let_go;
+  std::map<std::uint16_t, boards::Reads> read;         // what was last let_go() for
   std::vector<std::pair<std::uint16_t, bool>> handed;  // true: let_go(), false: take_back(); all
   std::map<std::uint16_t, std::vector<std::uint32_t>> pulses;   // all, by pin
   std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;  // the same, in order

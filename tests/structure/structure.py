@@ -85,7 +85,7 @@ HOSTED_HEADERS = {
 }
 HARDWARE = re.compile(r"\bvolatile\b|\b0x(40|41|E0)0[0-9A-Fa-f]{5}u?\b")
 # Calls of what drives an output; a board implements it.
-OUTPUT = re.compile(r"(\.|->)\s*pwm_write\s*\(|\bboard_?(\.|->)\s*(ping|let_go|take_back|enable)\s*\(")
+OUTPUT = re.compile(r"(\.|->)\s*pwm_write\s*\(|\bboard_?(\.|->)\s*(ping|let_go|take_back|enable|spi_open|spi_close)\s*\(")
 GUARD = "runtime-m4/guard/"
 ASSEMBLER = re.compile(r"\basm\b|\b__asm(__)?\b")
 BOARD_COSTS = re.compile(r"runtime-m4/boards/[\w-]+/costs\.def")

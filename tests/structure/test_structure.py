@@ -179,7 +179,7 @@ class Planted(unittest.TestCase):
         for name in ["runtime-m4/drivers/a.cpp", "runtime-m4/layers/a.cpp", "runtime-m4/boards/x/a.cpp",
                      "runtime-m4/update/a.hpp", "bench/firmware/a.cpp"]:
             for line in ["board_.pwm_write(3, 1500);", "device->pwm_write (pin, pulse);", "board_.ping(3, 40);", "board.ping(3, 40);",
-                         "board_.let_go(0);", "board->take_back(0);", "board_.enable(36, true);"]:
+                         "board_.let_go(0);", "board->take_back(0);", "board_.enable(36, true);", "board_.spi_open(0, 36);"]:
                 with self.subTest(name=name, line=line):
                     self.assert_red("outputs", name, f"{HEAD}{line}\n")
         self.assertEqual(self.check({"runtime-m4/guard/a.cpp": f"{HEAD}board_.pwm_write(3, 1500);\n"}), {})

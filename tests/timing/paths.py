@@ -17,7 +17,7 @@ FIRMWARE = ROOT / "build/m4/bench/path.elf"
 RUNTIME_COSTS = ROOT / "runtime-m4/policy/costs.def"
 DRIVERS = ROOT / "vm/drivers.def"
 DEVICES = ["-device", "max34451,id=touch,address=0x70", "-device", "tmp105,address=0x48", "-device", "tmp105,address=0x19",
-           "-device", "tmp105,address=0x6a", "-device", "tmp105,address=0x68", "-device", "tmp105,address=0x5f",
+           "-device", "tmp105,address=0x6a", "-device", "tmp105,address=0x68", "-device", "tmp105,address=0x5f", "-device", "tmp105,address=0x1e",
            "-device", "tmp105,address=0x29",
            # In the place of a PCA9685, and of an SSD1306: it acknowledges all, and is never as it was set up.
            "-device", "tmp105,address=0x4a", "-device", "tmp105,address=0x3c"]
@@ -52,8 +52,11 @@ def samples():
     by_pin = re.findall(r"^SENSOR_DRIVER\((\w+),\s*pin\(\)", drivers, re.M)
     by_echo = re.findall(r"^SENSOR_DRIVER\((\w+),\s*echo\(\)", drivers, re.M)
     by_adc = re.findall(r"^SENSOR_DRIVER\((\w+),\s*adc\(\)", drivers, re.M)
-    return (by_i2c | {name: declared["input"] for name in by_pin} | {name: declared["echo"] for name in by_echo}
-            | {name: declared["analog"] for name in by_adc})
+    by_edges = re.findall(r"^SENSOR_DRIVER\((\w+),\s*edges\(\)", drivers, re.M)
+    by_spi = {name: declared["spi_transfer"] + int(size) * declared["spi_byte"]
+              for name, size in re.findall(r"^SENSOR_DRIVER\((\w+),\s*spi\((\d+)\)", drivers, re.M)}
+    return (by_i2c | by_spi | {name: declared["input"] for name in by_pin} | {name: declared["echo"] for name in by_echo}
+            | {name: declared["analog"] for name in by_adc} | {name: declared["encoder"] for name in by_edges})
 
 
 def display_portions():

@@ -15,6 +15,7 @@
 using namespace robosync::vm;
 using namespace robosync::vm::test;
 using namespace robosync::vm::test::companion;
+using Op = Opcode;
 
 namespace {
 

@@ -94,6 +94,60 @@ ImageBuilder with_chip() {
 
 }  // namespace
 
+TEST_CASE("a part on SPI has its select pin for itself, and a format that there is") {
+  const auto refused = [](Refusal refusal, std::uint16_t index, auto wrong) {
+    check_refused([&](ImageBuilder& i) { wrong(i.sensors); }, {refusal, Section::sensors, index});
+  };
+  const auto by_echo = [](Sensor& sensor, unsigned trigger, unsigned echo) {
+    sensor.driver = DriverId::hc_sr04;
+    sensor.bus = static_cast<std::uint8_t>(trigger);
+    sensor.address = static_cast<std::uint16_t>(echo);
+    sensor.period_ms = kMinEchoPeriodMs;
+  };
+  const auto selected = [](Sensor& sensor, unsigned pin) {
+    sensor.driver = DriverId::spi_register;
+    sensor.bus = 0;
+    sensor.address = static_cast<std::uint16_t>(pin);
+    sensor.period_ms = 20;
+  };
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    selected(s[0], 36);
+    s[0].period_ms = 0;
+  });
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    selected(s[0], 36);
+    s[0].first_input = static_cast<std::uint8_t>(SpiFormat::count_);
+  });
+  refused(Refusal::bad_value, 0, [&](auto& s) {
+    selected(s[0], 36);
+    s[0].driver = DriverId::mcp3008;
+    s[0].first_input = 1;
+  });
+  refused(Refusal::shared_pin, 1, [&](auto& s) {
+    selected(s[0], 36);
+    selected(s[1], 36);
+  });
+  refused(Refusal::shared_pin, 1, [&](auto& s) {
+    selected(s[0], 20);
+    by_echo(s[1], 20, 40);
+  });
+  check_refused(
+      [&](ImageBuilder& image) {
+        selected(image.sensors[0], 36);
+        image.channels[1].stale_ms = 0;
+      },
+      {Refusal::never_stale, Section::behaviors, 0});
+  {
+    ImageBuilder image = robot::make();
+    selected(image.sensors[0], 36);
+    image.sensors[0].first_input = static_cast<std::uint8_t>(SpiFormat::int8);
+    selected(image.sensors[1], 37);
+    check_accepted(image);
+    image.actuators[1].pin = 37;
+    check_refused(image, {Refusal::shared_pin, Section::actuators, 1});
+  }
+}
+
 TEST_CASE("a servo chip has its place on the bus and its enable pin for itself") {
   const auto changed = [](auto change) {
     ImageBuilder image = with_chip();

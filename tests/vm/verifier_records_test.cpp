@@ -31,7 +31,7 @@ TEST_CASE("sensors") {
   refused(Refusal::no_driver, 0, [](auto& s) { s[0].driver = static_cast<DriverId>(200); });
   refused(Refusal::no_driver, 1, [](auto& s) { s[1].driver = DriverId::count_; });
   refused(Refusal::bad_value, 1, [](auto& s) { s[1].driver = DriverId::virtual_actuator; });
-  refused(Refusal::bad_value, 0, [](auto& s) { s[0].reserved = 1; });
+  refused(Refusal::bad_value, 0, [](auto& s) { s[0].room = 1; });
   refused(Refusal::bad_index, 0, [](auto& s) { s[0].first_channel = 1; });
   refused(Refusal::bad_index, 1, [](auto& s) { s[1].first_channel = 1; });  // overlaps the first
   refused(Refusal::bad_index, 1, [](auto& s) { s[0].channel_count = 1; });  // leaves a gap
@@ -230,9 +230,9 @@ TEST_CASE("an algorithm reads what was measured before it, every so often") {
 
 TEST_CASE("a driver that the firmware does not have is named by its record") {
   Limits limits;
-  limits.drivers = ~(1U << static_cast<unsigned>(DriverId::max34451));
+  limits.drivers = ~(std::uint64_t{1} << static_cast<unsigned>(DriverId::max34451));
   check_refused(robot::make(), {Refusal::no_driver, Section::sensors, 0}, limits);
-  limits.drivers = ~(1U << static_cast<unsigned>(DriverId::player));
+  limits.drivers = ~(std::uint64_t{1} << static_cast<unsigned>(DriverId::player));
   check_refused(robot::make(), {Refusal::no_driver, Section::actuators, 2}, limits);
 }
 
@@ -243,7 +243,7 @@ TEST_CASE("channels") {
   refused(Refusal::bad_index, 0, [](auto& c) { c[0].sensor = 1; });
   refused(Refusal::bad_index, 2, [](auto& c) { c[2].sensor = 0; });
   refused(Refusal::bad_index, 2, [](auto& c) { c[2].sensor = 2; });
-  refused(Refusal::bad_value, 1, [](auto& c) { c[1].dimension = static_cast<Dimension>(15); });
+  refused(Refusal::bad_value, 1, [](auto& c) { c[1].dimension = static_cast<Dimension>(16); });
   refused(Refusal::bad_index, 1, [](auto& c) { c[1].label_count = 5; });
   refused(Refusal::bad_index, 1, [](auto& c) {
     c[1].label_count = 1;
@@ -382,7 +382,7 @@ TEST_CASE("variables") {
     refused_record(&ImageBuilder::variables, Section::variables, refusal, index, wrong);
   };
   for (std::uint16_t index = 0; index < 5; ++index) {
-    refused(Refusal::bad_value, index, [](auto& v) { v.dimension = static_cast<Dimension>(15); });
+    refused(Refusal::bad_value, index, [](auto& v) { v.dimension = static_cast<Dimension>(16); });
     refused(Refusal::bad_value, index, [](auto& v) { v.reserved = 1; });
     refused(Refusal::bad_value, index, [](auto& v) { v.min = kUnknown; });
     refused(Refusal::bad_value, index, [](auto& v) { v.max = v.min - 1; });
@@ -563,56 +563,6 @@ TEST_CASE("responses") {
   refused(2, [](Response& r) { r.length = 0; });
   refused(2, [](Response& r) { r.start = 0xFFFF; });
   refused(0, [](Response& r) { r.length = 0xFFFF; });
-}
-
-TEST_CASE("traits: the robot's name first, which is none or one") {
-  const auto with = [](std::vector<Trait> traits) {
-    return [traits](auto& image) { image.traits = traits; };
-  };
-  const auto called = [](std::size_t length) {
-    ImageBuilder image = robot::make();
-    image.traits = {{image.name(std::string(length, 'x')), 0, TraitKind::name}};
-    return image;
-  };
-  check_accepted(called(1));
-  check_accepted(called(kMaxRobotName));
-  check_refused([&](auto& image) { image = called(kMaxRobotName + 1); },
-                {Refusal::bad_value, Section::traits, 0});
-  check_refused(with({{0, 0, TraitKind::name}, {0, 0, TraitKind::name}}),
-                {Refusal::bad_value, Section::traits, 1});
-  check_refused(with({{0, 1, TraitKind::name}}), {Refusal::bad_value, Section::traits, 0});
-  check_refused(with({{0x7FFF, 0, TraitKind::name}}), {Refusal::bad_string, Section::traits, 0});
-  check_refused(with({{1, 0, TraitKind::count_}}), {Refusal::bad_value, Section::traits, 0});
-}
-
-TEST_CASE("traits: the accelerations of actuators that move at a speed, in their order") {
-  const auto robot_with = [](std::vector<Trait> traits) {
-    ImageBuilder image = robot::make();
-    image.actuators[0].driver = DriverId::servo;
-    image.actuators[1].driver = DriverId::virtual_motion;
-    image.actuators[1].pin = 90;
-    image.traits = std::move(traits);
-    return image;
-  };
-  const auto limit = [](std::uint8_t actuator, std::uint16_t value = 400) {
-    return Trait{value, actuator, TraitKind::acceleration};
-  };
-  const auto refused = [&](std::vector<Trait> traits, Refusal why, std::uint16_t place) {
-    check_refused([&](auto& image) { image = robot_with(traits); }, {why, Section::traits, place});
-  };
-  check_accepted(robot_with({limit(0)}));
-  check_accepted(robot_with({{0, 0, TraitKind::name}, limit(0, 1), limit(1, UINT16_MAX)}));
-  refused({limit(0), {0, 0, TraitKind::name}}, Refusal::bad_value, 1);
-  refused({limit(0), limit(0)}, Refusal::bad_value, 1);
-  refused({limit(1), limit(0)}, Refusal::bad_value, 1);
-  refused({limit(0, 0)}, Refusal::bad_value, 0);
-  refused({limit(2)}, Refusal::bad_value, 0);  // it has no speed
-  refused({limit(31)}, Refusal::bad_index, 0);
-  const auto slow = [&](auto& image) {
-    image = robot_with({limit(0), limit(1)});
-    image.actuators[1].pin = 0;  // a command takes as long as it says
-  };
-  check_refused(slow, {Refusal::bad_value, Section::traits, 1});
 }
 
 TEST_CASE("adaptation: none or one, in its ranges") {

@@ -44,5 +44,6 @@ inline constexpr std::array<Bus, 2> kBuses{
 inline constexpr SerialPins kLink{kUsart1, kPortB, 7, 6, 7};  // to the ST-LINK
 inline constexpr SerialPins kPlayer{kUart4, kPortA, 8, 0};    // D1
 inline constexpr PanelPin kPanel{11, 5};
+inline constexpr SpiPins kSpi{13, 11, {kPortA, 6}, 5};  // D13, D11, D12
 
 }  // namespace robosync::boards::stm32l4::wiring

@@ -3,6 +3,7 @@
 #
 #   board_folder    folder in boards/ with its sources, linker script and interrupts.hpp: a chip's; default: NAME
 #   board_sources   the board's own sources there; if they depend on the chip's wiring, boards/NAME/wiring.hpp describes it
+#   board_fast      those of them that are compiled for speed, together
 #   board_script    its linker script, which includes firmware.ld
 #   board_machine   QEMU's name of the board (build/…/machine, for scripts and tests)
 #   board_line      the serial line of that machine that is the link's; default: 0 (build/…/line)
@@ -24,6 +25,12 @@ function(robosync_wire_board target)
   set_property(TARGET ${target} PROPERTY INTERFACE_LINK_DEPENDS ${script} ${board_common}/firmware.ld)
 endfunction()
 
+# Calls between these files are inlined. The compiler must not turn loops over a few bytes into calls.
+function(robosync_hurry folder)
+  list(TRANSFORM ARGN PREPEND boards/${folder}/)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-O2;-fno-tree-loop-distribute-patterns;-flto;-ffat-lto-objects")
+endfunction()
+
 # robosync_board(TARGET FOLDER): the objects of the board that profile.cmake and board.cmake describe. FOLDER gets the firmware
 # and the files about the machine that scripts and tests read.
 function(robosync_board target folder)
@@ -36,6 +43,7 @@ function(robosync_board target folder)
   file(WRITE ${folder}/machine "${board_machine}\n")
   file(WRITE ${folder}/line "${board_line}\n")
   list(TRANSFORM board_sources PREPEND boards/${board_folder}/)
+  robosync_hurry(${board_folder} ${board_fast})
   add_library(${target} OBJECT
     boards/common/startup.cpp boards/common/reset.cpp boards/common/costs.cpp boards/common/vectors.cpp ${board_sources})
   target_link_libraries(${target} PUBLIC robosync_runtime)
@@ -72,6 +80,7 @@ robosync_elf(robosync_firmware robosync boards/common/main.cpp)
 function(robosync_twin ROBOSYNC_BOARD)
   unset(board_folder)
   unset(board_line)
+  unset(board_fast)
   include(boards/profile.cmake)
   include(boards/${ROBOSYNC_BOARD}/board.cmake)
   list(APPEND runtime_definitions ${board_clock} ${board_code})

@@ -7,30 +7,31 @@
 #include "runtime-m4/boards/microbit-v2/echoes.hpp"
 #include "runtime-m4/boards/microbit-v2/inputs.hpp"
 #include "runtime-m4/boards/microbit-v2/lights.hpp"
+#include "runtime-m4/boards/microbit-v2/logo.hpp"
 #include "runtime-m4/boards/microbit-v2/microphone.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 #include "runtime-m4/boards/microbit-v2/speaker.hpp"
+#include "runtime-m4/boards/microbit-v2/spi.hpp"
+#include "runtime-m4/boards/microbit-v2/thermometer.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
 namespace robosync::boards::microbit {
 
-namespace {
-
 Board board;
-
-}  // namespace
 
 // The pins come first, so that they are low as soon as possible.
 Board::Board() : chip_reset_(take_reset_cause()) {
   pins::start();
+  if (inputs::free_from_nfc()) port::core::reset();
   inputs::start();
   echoes::start();
   port::core::enable_interrupt(gpiote::kInterrupt);
   lights::start();
   speaker::start();
   microphone::start();
+  logo::start();
   player::start();
   port::core::enable_interrupt(kRowInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
@@ -39,6 +40,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
     bus.start();
   for (const Twim& master : {kTwim0, kTwim1})
     port::core::enable_interrupt(master.interrupt);
+  port::core::enable_interrupt(kPartSpi.interrupt);
   if (!start_clock()) port::core::reset();
   analog::start();
 }
@@ -57,23 +59,17 @@ link::ResetReason Board::reset_reason() const {
   return last_reset();
 }
 
-bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+bool Board::spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
                          std::span<std::byte> in) {
-  return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
+  return bus == 0 && spi::transfer(asks_ahead_, select, out, in);
 }
 
-// The address comes with the transfer.
-bool Board::i2c_select(std::uint8_t bus, std::uint8_t /*address*/,
-                       std::span<const std::byte> page) {
-  return bus < i2c_.size() && i2c_[bus].select(page);
+void Board::spi_open(std::uint8_t /*bus*/, std::uint16_t select) {
+  spi::open(select);
 }
 
-bool Board::i2c_busy() const {
-  return is_any_busy(i2c_);
-}
-
-BusState Board::buses() const {
-  return state_of(i2c_);
+void Board::spi_close() {
+  spi::close();
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -88,6 +84,15 @@ std::uint32_t Board::take_echo(std::uint16_t echo) {
   return echoes::take(echo);
 }
 
+bool Board::take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                       Turned& turned) {
+  return echoes::take_edges(number, a, b, most, turned);
+}
+
+void Board::end_edges(unsigned number) {
+  echoes::end_edges(number);
+}
+
 bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {
   return analog::read(pin, voltage);
 }
@@ -100,8 +105,18 @@ bool Board::hear(SoundBlock sound) {
   return microphone::hear(sound);
 }
 
-void Board::let_go(std::uint16_t pin) {
-  pins::let_go(pin);
+bool Board::measure(Part part, std::int32_t& raw) {
+  switch (part) {
+    case Part::logo:
+      return logo::measure(raw);
+    case Part::thermometer:
+      return thermometer::measure(raw);
+  }
+  return false;
+}
+
+void Board::let_go(std::uint16_t pin, Reads what) {
+  pins::let_go(pin, what);
 }
 
 void Board::take_back(std::uint16_t pin) {
@@ -137,6 +152,7 @@ void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
 robosync::boards::Board& robosync_board = robosync::boards::microbit::board;
 
 void robosync::boards::switch_outputs_off() {
+  microbit::spi::switch_off();
   microbit::pins::switch_off();
   microbit::lights::show(0);
   microbit::speaker::sound(0);
@@ -150,10 +166,9 @@ extern "C" {
 void NMI_Handler();
 void Uart0_Handler();
 void Row_Handler();
-void EdgeBus_Handler();
-void OwnBus_Handler();
 void Pwm_Handler();
 void Echo_Handler();
+void Spi_Handler();
 
 // Nothing in the chip causes one.
 void NMI_Handler() {
@@ -173,12 +188,8 @@ void Row_Handler() {
   robosync::boards::microbit::lights::next_row();
 }
 
-void EdgeBus_Handler() {
-  robosync::boards::microbit::board.i2c(0).on_interrupt();
-}
-
-void OwnBus_Handler() {
-  robosync::boards::microbit::board.i2c(1).on_interrupt();
+void Spi_Handler() {
+  robosync::boards::microbit::spi::on_interrupt();
 }
 
 void Echo_Handler() {

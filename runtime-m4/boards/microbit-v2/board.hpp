@@ -55,18 +55,28 @@ public:
   const policy::BoardPins& pins() const override { return boards::kPins; }
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  bool i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
+                    std::span<std::byte> in) override;
+  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
+                    std::span<std::byte> in) override;
+  void spi_open(std::uint8_t bus, std::uint16_t select) override;
+  void spi_close() override;
   BusState buses() const override;
   bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
-  bool i2c_asks_ahead() const override { return true; }
-  void i2c_ask(bool ahead) override { asks_ahead_ = ahead; }
-  bool i2c_busy() const override;
+  bool buses_ask_ahead() const override { return true; }
+  void ask_buses(bool ahead) override { asks_ahead_ = ahead; }
+  bool buses_busy() const override;
   bool input(std::uint16_t pin) const override;
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
+  bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                  Turned& turned) override;
+  void end_edges(unsigned number) override;
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void listen(bool on) override;
   bool hear(SoundBlock sound) override;
-  void let_go(std::uint16_t pin) override;
+  bool measure(Part part, std::int32_t& raw) override;
+  void let_go(std::uint16_t pin, Reads what) override;
   void take_back(std::uint16_t pin) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
@@ -96,5 +106,7 @@ private:
   std::array<I2c, 2> i2c_{I2c({kTwim1, {.clock = {0, 26}, .data = {1, 0}}}),
                           I2c({kTwim0, {.clock = {0, 8}, .data = {0, 16}}})};
 };
+
+extern Board board;
 
 }  // namespace robosync::boards::microbit

@@ -12,7 +12,7 @@ namespace robosync::boards::microbit {
 [[nodiscard]] bool start_clock();
 
 // Channels of kClockTimer.
-inline constexpr unsigned kAlarm = 0, kReading = 1;
+inline constexpr unsigned kAlarm = 0, kReading = 1, kLogoIsEmpty = 2, kLogoIsCharged = 3;
 
 // Counts up, in 1/16 us. [any processor state]
 //

@@ -7,10 +7,6 @@ namespace {
 
 constexpr unsigned kHalfBit = 24;  // iterations of a loop of four cycles: 1.5 us
 
-bool is_high(const Pin& pin) {
-  return pin.levels().has(pin.mask());
-}
-
 }  // namespace
 
 void TwimMaster::start() const {
@@ -68,14 +64,6 @@ void TwimMaster::let_go() const {
   forget(master_.error());
   forget(master_.stopped());
   master_.enable().write(Twim::kOn);
-}
-
-bool TwimMaster::clock_is_high() const {
-  return is_high(lines_.clock);
-}
-
-bool TwimMaster::data_is_high() const {
-  return is_high(lines_.data);
 }
 
 void TwimMaster::take_clock() const {

@@ -22,14 +22,16 @@ public:
   void begin(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in);
   Transfer on_interrupt();
   void let_go() const;
-  bool clock_is_high() const;
-  bool data_is_high() const;
+  bool clock_is_high() const { return is_high(lines_.clock); }
+  bool data_is_high() const { return is_high(lines_.data); }
+  bool are_high() const { return clock_is_high() && data_is_high(); }
   void take_clock() const;
   void give_clock_back() const;
   void drive_clock(bool high) const;
   static void half_bit();
 
 private:
+  static bool is_high(const Pin& pin) { return pin.levels().has(pin.mask()); }
   bool is_whole() const;
 
   Twim master_;

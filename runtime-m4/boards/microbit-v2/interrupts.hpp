@@ -11,6 +11,7 @@ extern "C" void Echo_Handler();
 extern "C" void Row_Handler();
 extern "C" void EdgeBus_Handler();
 extern "C" void OwnBus_Handler();
+extern "C" void Spi_Handler();
 
 namespace robosync::boards {
 
@@ -20,6 +21,7 @@ inline constexpr std::array kUsedInterrupts{Interrupt{microbit::uart::kInterrupt
                                             Interrupt{microbit::kRowInterrupt, Row_Handler},
                                             Interrupt{microbit::kTwim0.interrupt, OwnBus_Handler},
                                             Interrupt{microbit::kTwim1.interrupt, EdgeBus_Handler},
+                                            Interrupt{microbit::kPartSpi.interrupt, Spi_Handler},
                                             Interrupt{microbit::kPwm0.interrupt, Pwm_Handler},
                                             Interrupt{microbit::kPwm1.interrupt, Pwm_Handler}};
 

@@ -19,7 +19,7 @@ bool runs = false;
 
 constexpr unsigned kPorts = 2;
 constexpr Pin port_pin(unsigned port) {
-  return {port, 0};
+  return {static_cast<std::uint8_t>(port), 0};
 }
 
 constexpr std::uint32_t columns_of(unsigned port) {

@@ -24,7 +24,7 @@ constexpr std::uint32_t kCounts = 16'000'000 / 8000 / 8;  // of 16 MHz, for each
 // with the same crystal.
 constexpr std::uint32_t kFirstBlock = kSoundBlock / 2;
 // Channels of the PPI; echoes.cpp has the first ones.
-constexpr unsigned kGoOn = 4, kCount = 5, kSample = 6;
+constexpr unsigned kGoOn = 6, kCount = 7, kSample = 8;
 constexpr std::uint32_t kChannels = 1U << kGoOn | 1U << kCount | 1U << kSample;
 
 constexpr unsigned kLooks = 200;  // polls (happens()): 12 us

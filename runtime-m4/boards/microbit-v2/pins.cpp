@@ -126,8 +126,9 @@ void write(std::uint16_t pin, std::uint32_t pulse_us) {
   if (state.ended == kSettled) give(*output, state);
 }
 
-void let_go(std::uint16_t pin) {
-  if (const Output* const output = find(pin)) output->chip.configuration().write(Pin::kAnalog);
+void let_go(std::uint16_t pin, Reads what) {
+  if (const Output* const output = find(pin))
+    output->chip.configuration().write(what == Reads::level ? Pin::kInputPulledUp : Pin::kAnalog);
 }
 
 void take_back(std::uint16_t pin) {
@@ -137,6 +138,15 @@ void take_back(std::uint16_t pin) {
 void enable(std::uint16_t pin, bool on) {
   if (pin != kEnable) return;
   (on ? kEnableChip.set_low() : kEnableChip.set_high()).write(kEnableChip.mask());
+}
+
+void select(std::uint16_t pin, bool on) {
+  if (const Pin* const chip = pin == kEnable ? &kEnableChip : chip_pin(pin))
+    (on ? chip->set_low() : chip->set_high()).write(chip->mask());
+}
+
+void end_select(std::uint16_t pin) {
+  if (const Pin* const chip = chip_pin(pin)) chip->set_low().write(chip->mask());
 }
 
 const Pin* chip_pin(std::uint16_t pin) {
@@ -154,8 +164,10 @@ void switch_off() {
   enable(kEnable, false);
   for (const Pwm& module : kModules)
     module.enable().write(0);
-  for (const Output& output : kOutputs)
+  for (const Output& output : kOutputs) {
+    end_select(output.pin);
     low_at_once(output, state_of(output));
+  }
 }
 
 void on_period_end() {

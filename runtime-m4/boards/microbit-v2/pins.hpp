@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
 
 namespace robosync::boards::microbit::pins {
@@ -19,12 +20,19 @@ void write(std::uint16_t pin, std::uint32_t pulse_us);
 // The last pulse that was written.
 std::uint32_t read(std::uint16_t pin);
 
-// Nothing drives the pin between let_go() and take_back(); then it is low. It must give no pulses. No effect on other pins.
-void let_go(std::uint16_t pin);
+// Nothing drives the pin between let_go() and take_back(); then it is low. Meanwhile it is pulled up if its level is read. It
+// must give no pulses. No effect on other pins.
+void let_go(std::uint16_t pin, Reads what);
 void take_back(std::uint16_t pin);
 
 // Sets the pin at an enable input low (on) or high (off). No effect on other pins.
 void enable(std::uint16_t pin, bool on);
+
+// Sets the select pin of a part on SPI low (on) or high: the pin at an enable input, or one for pulses, which must give none. No
+// effect on other pins.
+void select(std::uint16_t pin, bool on);
+// Sets a pin for pulses that was a select pin low again. No effect on other pins.
+void end_select(std::uint16_t pin);
 
 // The chip's pin; null if it is not for pulses.
 const Pin* chip_pin(std::uint16_t pin);

@@ -9,6 +9,9 @@ namespace {
 
 policy::PlayerCommand sent;
 
+// A byte takes 1.05 ms, and a poll at least 0.1 us.
+constexpr unsigned kLooksAtStop = 12'000;
+
 }  // namespace
 
 // The pin is high, the idle level of a line, before the module takes it.
@@ -18,6 +21,14 @@ void start() {
   player_uart::kTransmitPinSelect.write(player_uart::kTransmitPin.number());
   player_uart::kBaudRate.write(player_uart::k9600);
   player_uart::kEnable.write(player_uart::kOn);
+}
+
+void close() {
+  unsigned looks = kLooksAtStop;
+  forget(player_uart::kStopped);
+  player_uart::kStopTransmitting.write(kDoIt);
+  static_cast<void>(happens(player_uart::kStopped, looks));
+  player_uart::kEnable.write(0);
 }
 
 void say(const policy::PlayerCommand& command) {

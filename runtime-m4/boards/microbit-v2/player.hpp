@@ -6,6 +6,8 @@
 namespace robosync::boards::microbit::player {
 
 void start();
+// Gives the pin back until start(): a command that is on its way ends with its present byte, and say() has no effect.
+void close();
 // Begins to send a command (boards::Board::say()).
 void say(const policy::PlayerCommand& command);
 

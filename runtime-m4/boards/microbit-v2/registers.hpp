@@ -41,6 +41,16 @@ inline constexpr std::uint32_t kWatchdogReset = 1U << 1;
 inline constexpr std::uint32_t kLockup = 1U << 3;
 }  // namespace power
 
+namespace information {                             // FICR
+inline constexpr Register kPageBytes{0x1000'0010};  // of the flash
+inline constexpr std::uint32_t kOfNrf52833 = 4096;
+}  // namespace information
+
+namespace settings {  // UICR: flash that is written like a program, and read at a reset
+inline constexpr Register kNfcPins{0x1000'120C};
+inline constexpr std::uint32_t kAreForNfc = 1U << 0;
+}  // namespace settings
+
 namespace flash {
 inline constexpr std::uint32_t kBytes = 512 * 1024;  // from 0 on
 inline constexpr Register kReady{0x4001'E400};       // the last operation has ended
@@ -56,11 +66,11 @@ inline constexpr std::uint32_t kOn = 1;
 }  // namespace flash
 
 struct Pin {  // {0, 6} is P0.06
-  unsigned port, bit;
+  std::uint8_t port, bit;
 
   constexpr std::uint32_t mask() const { return 1U << bit; }
   // The value that selects this pin in a peripheral's register.
-  constexpr std::uint32_t number() const { return port << 5 | bit; }
+  constexpr std::uint32_t number() const { return std::uint32_t{port} << 5 | bit; }
   constexpr Register set_high() const { return {base() + 0x508}; }
   constexpr Register set_low() const { return {base() + 0x50C}; }
   constexpr Register levels() const { return {base() + 0x510}; }
@@ -69,6 +79,7 @@ struct Pin {  // {0, 6} is P0.06
   static constexpr std::uint32_t kOutput = 0b11;                    // input buffer disconnected
   static constexpr std::uint32_t kStrongOutput = 3 << 8 | kOutput;  // H0H1: 10 mA instead of 2
   static constexpr std::uint32_t kClockOutput = 0b01;  // a serial master hears its own clock
+  static constexpr std::uint32_t kInput = 0;
   static constexpr std::uint32_t kInputPulledUp = 0b1100;
   static constexpr std::uint32_t kAnalog = 0b10;  // nothing drives it, and no level is read
   // Pulled up, open drain: S0D1. TWIM wants its pins as inputs.
@@ -106,6 +117,8 @@ namespace player_uart {  // UARTE1, with DMA, to a sound player on pin 15 of the
 inline constexpr std::uintptr_t kBase = 0x4002'8000;
 inline constexpr Pin kTransmitPin{0, 13};
 inline constexpr Register kStartTransmitting{kBase + 0x008};
+inline constexpr Register kStopTransmitting{kBase + 0x00C};
+inline constexpr Register kStopped{kBase + 0x158};  // event: nothing is on its way
 inline constexpr Register kEnable{kBase + 0x500};
 inline constexpr std::uint32_t kOn = 8;
 inline constexpr Register kTransmitPinSelect{kBase + 0x50C};
@@ -115,25 +128,44 @@ inline constexpr Register kSendFrom{kBase + 0x544};
 inline constexpr Register kSendCount{kBase + 0x548};
 }  // namespace player_uart
 
-namespace panel_spi {  // SPIM2, for a panel of lights; it receives nothing
-inline constexpr std::uintptr_t kBase = 0x4002'3000;
-// Without a clock pin whose input buffer is connected, it sends nothing. The board connects P0.27 to nothing.
-inline constexpr Pin kClock{0, 27};
-inline constexpr Register kStart{kBase + 0x010};
-inline constexpr Register kStop{kBase + 0x014};
-inline constexpr Register kStopped{kBase + 0x104};  // event
-inline constexpr Register kEnded{kBase + 0x118};    // event: everything has left
-inline constexpr Register kEnable{kBase + 0x500};
-inline constexpr std::uint32_t kOn = 7;
-inline constexpr Register kClockPin{kBase + 0x508};
-inline constexpr Register kOutputPin{kBase + 0x50C};
-inline constexpr Register kFrequency{kBase + 0x524};
-inline constexpr std::uint32_t kHz = 4'000'000;
-inline constexpr std::uint32_t k4MHz = 0x4000'0000;
-inline constexpr Register kReceiveCount{kBase + 0x538};
-inline constexpr Register kSendFrom{kBase + 0x544};
-inline constexpr Register kSendCount{kBase + 0x548};  // of 16 bits
-}  // namespace panel_spi
+// An SPI master with DMA (SPIM). Without a clock pin whose input buffer is connected, it sends nothing.
+struct Spim {
+  std::uintptr_t base;
+  unsigned interrupt;
+
+  constexpr Register start() const { return {base + 0x010}; }
+  constexpr Register stop() const { return {base + 0x014}; }
+  constexpr Register stopped() const { return {base + 0x104}; }  // event
+  constexpr Register ended() const {
+    return {base + 0x118};
+  }  // event: everything has left, and come
+  constexpr Register interrupt_on() const { return {base + 0x304}; }
+  constexpr Register enable() const { return {base + 0x500}; }
+  constexpr Register clock_pin() const { return {base + 0x508}; }
+  constexpr Register output_pin() const { return {base + 0x50C}; }
+  constexpr Register input_pin() const { return {base + 0x510}; }
+  constexpr Register frequency() const { return {base + 0x524}; }
+  constexpr Register receive_to() const { return {base + 0x534}; }
+  constexpr Register receive_count() const { return {base + 0x538}; }
+  constexpr Register received() const { return {base + 0x53C}; }  // bytes
+  constexpr Register send_from() const { return {base + 0x544}; }
+  constexpr Register send_count() const { return {base + 0x548}; }  // of 16 bits
+  constexpr Register configuration() const { return {base + 0x554}; }
+
+  static constexpr std::uint32_t kOn = 7;
+  static constexpr std::uint32_t kWhenEnded = 1U << 6;  // interrupt
+  static constexpr std::uint32_t k1MHz = 0x1000'0000;
+  static constexpr std::uint32_t k4MHz = 0x4000'0000;
+  static constexpr std::uint32_t kMode0 = 0;  // and the highest bit first
+};
+// SPIM2, for a panel of lights; it receives nothing. The board connects its clock, P0.27, to nothing.
+inline constexpr Spim kPanelSpi{0x4002'3000, 35};
+inline constexpr Pin kPanelClock{0, 27};
+// SPIM3, for parts on pins 13 (clock), 14 (input) and 15 (output) of the edge connector. It shares its number with no I2C master.
+inline constexpr Spim kPartSpi{0x4002'F000, 47};
+inline constexpr Pin kPartClock{0, 17};
+inline constexpr Pin kPartInput{0, 1};
+inline constexpr Pin kPartOutput = player_uart::kTransmitPin;
 
 struct Timer {
   std::uintptr_t base;
@@ -199,6 +231,9 @@ inline constexpr std::uint32_t kOff = 0;
 constexpr std::uint32_t edges_of(Pin pin) {
   return 1U | pin.number() << 8 | 3U << 16;
 }
+constexpr std::uint32_t rising_edge_of(Pin pin) {
+  return 1U | pin.number() << 8 | 1U << 16;
+}
 constexpr std::uint32_t drives(Pin pin) {  // initially low
   return 3U | pin.number() << 8;
 }
@@ -252,6 +287,13 @@ inline constexpr std::uint32_t kMeanOf8 = 3;
 inline constexpr Register kResultsTo{kBase + 0x62C};
 inline constexpr Register kResultCount{kBase + 0x630};
 }  // namespace saadc
+
+namespace temperature {  // TEMP, of the chip
+inline constexpr Register kStart{0x4000'C000};
+inline constexpr Register kStop{0x4000'C004};
+inline constexpr Register kIsReady{0x4000'C100};   // event
+inline constexpr Register kQuarters{0x4000'C508};  // of a degree; a signed number
+}  // namespace temperature
 
 namespace watchdog {  // WDT, on the 32,768 Hz oscillator
 inline constexpr std::uint32_t kHz = 32'768;

@@ -2,6 +2,7 @@
 
 #include "runtime-m4/boards/common/firmware.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
+#include "runtime-m4/boards/mps2-an386/spi.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
 
@@ -9,6 +10,7 @@ std::array<volatile std::uint32_t, kVirtualPwmPins> robosync_virtual_pwm{};
 volatile std::uint32_t robosync_virtual_inputs = (1U << kVirtualInputs) - 1;  // as if pulled up
 
 std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes{};
+std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_edges{};
 
 std::array<volatile std::uint32_t, kVirtualAnalog> robosync_virtual_analog{};
 
@@ -33,6 +35,7 @@ Board::Board() {
   clock.reload = ~std::uint32_t{0};
   clock.value = ~std::uint32_t{0};
   clock.control = kTimerOn;
+  spi::start();
 }
 
 bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
@@ -44,6 +47,26 @@ bool Board::i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const s
   return bus == 0 && i2c_.transfer(address, page, {});
 }
 
+// As the base does it, but with one frame less on the stack of the sensor's thread.
+bool Board::i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
+                         std::span<std::byte> in) {
+  if (bus != 0) return false;
+  std::byte at = blocks.first;
+  const std::span out(&at, 1);
+  const bool first = i2c_.transfer(address, out, in.first(blocks.split));
+  at = blocks.second;
+  return i2c_.transfer(address, out, in.subspan(blocks.split)) && first;
+}
+
+bool Board::spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
+                         std::span<std::byte> in) {
+  if (bus != 0) return false;
+  enable(select, true);
+  const bool done = spi::transfer(out, in);
+  enable(select, false);
+  return done;
+}
+
 bool Board::input(std::uint16_t pin) const {
   const unsigned bit = pin - unsigned{kFirstInput};
   return bit < kVirtualInputs && (robosync_virtual_inputs >> bit & 1) != 0;
@@ -52,6 +75,27 @@ bool Board::input(std::uint16_t pin) const {
 std::uint32_t Board::take_echo(std::uint16_t echo) {
   const unsigned place = echo - unsigned{kFirstInput};
   return place < kVirtualInputs ? robosync_virtual_echoes[place] : 0;
+}
+
+// As if the edges had come just now. More than `most` are lost, as they would be on a pin.
+bool Board::take_edges(unsigned number, std::uint16_t a, std::uint8_t /*b*/, unsigned most,
+                       Turned& turned) {
+  const unsigned place = a - unsigned{kFirstInput};
+  if (place >= kVirtualInputs) return false;
+  Counted& counted = counted_[number];
+  const std::uint32_t edges = robosync_virtual_edges[place];
+  const bool begins = !counted.begun;
+  if (begins) counted = {edges, edges, true};
+  const auto more = static_cast<std::int32_t>(edges - counted.last);
+  counted.last = edges;
+  const bool all = static_cast<std::uint32_t>(more < 0 ? -more : more) <= most;
+  if (!all) counted.begin += static_cast<std::uint32_t>(more);
+  turned = {static_cast<std::int32_t>(edges - counted.begin), 0, begins};
+  return all;
+}
+
+void Board::end_edges(unsigned number) {
+  counted_[number].begun = false;
 }
 
 bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {

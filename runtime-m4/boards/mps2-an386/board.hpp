@@ -2,7 +2,7 @@
 //
 // It has no PWM and no pins that could be read, so they are words in memory. The host reads the PWM pins,
 // `robosync_virtual_pwm`, and writes the input pins, bits of `robosync_virtual_inputs`. It writes the length of each echo,
-// `robosync_virtual_echoes` (trigger pins have no effect), and the counts of each analog input, `robosync_virtual_analog`.
+// `robosync_virtual_echoes` (trigger pins have no effect), the edges of each encoder, `robosync_virtual_edges`, and the counts of each analog input, `robosync_virtual_analog`.
 // Everything above this file is the same as with real pins.
 #pragma once
 
@@ -26,6 +26,8 @@ inline constexpr std::uint16_t kFirstInput = 40;
 inline constexpr std::uint16_t kVirtualInputs = 4;
 // How long each input is high after a pulse on a trigger pin, in microseconds; 0: no echo.
 extern "C" std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_echoes;
+// The edges of an encoder at each input since power-up; the program counts them from where it begins.
+extern "C" std::array<volatile std::uint32_t, kVirtualInputs> robosync_virtual_edges;
 // The counts of each analog input, up to boards::kAnalogFull; more: it does not answer.
 inline constexpr std::uint16_t kFirstAnalog = 44;
 inline constexpr std::uint16_t kVirtualAnalog = 4;
@@ -49,13 +51,21 @@ public:
   const char* name() const override { return "mps2-an386"; }
   ResetReason reset_reason() const override { return last_reset(); }
   const policy::BoardPins& pins() const override { return boards::kPins; }
+  static_assert(!meet(kOutputs, kInputs) && !meet(kOutputs, kAnalog), "let_go() does nothing here");
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
+                    std::span<std::byte> in) override;
   bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
+  bool i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
+                    std::span<std::byte> in) override;
   BusState buses() const override { return i2c_.state(); }
   bool input(std::uint16_t pin) const override;
   Store* store() override { return &eeprom_; }
   std::uint32_t take_echo(std::uint16_t echo) override;
+  bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                  Turned& turned) override;
+  void end_edges(unsigned number) override;
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
@@ -72,6 +82,12 @@ public:
   Player& player() { return player_; }
 
 private:
+  // What has been counted of an encoder before it began, and at its last take.
+  struct Counted {
+    std::uint32_t begin = 0, last = 0;
+    bool begun = false;
+  };
+  std::array<Counted, vm::kMaxEncoders> counted_{};
   Uart uart_;
   Player player_;
   I2c i2c_{kI2c0};

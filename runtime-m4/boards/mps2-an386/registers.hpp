@@ -36,6 +36,15 @@ inline constexpr std::uintptr_t kI2c0 = 0x4002'A000;  // QEMU attaches -device t
 inline constexpr std::uint32_t kI2cClock = 1U << 0;
 inline constexpr std::uint32_t kI2cData = 1U << 1;
 
+// PL022 (ARM DDI 0194), whose clock is the processor's.
+inline constexpr std::uintptr_t kSpi0 = 0x4002'7000;  // shield 1; QEMU attaches -device to this bus
+inline constexpr std::uintptr_t kSpiControl0 = 0x00, kSpiControl1 = 0x04, kSpiData = 0x08,
+                                kSpiStatus = 0x0C, kSpiPrescale = 0x10;
+inline constexpr std::uint32_t kSpiBytes = 8 - 1;  // frames of 8 bits, mode 0
+inline constexpr std::uint32_t kSpiOn = 1U << 1;   // as master
+inline constexpr std::uint32_t kSpiSentAll = 1U << 0;
+inline constexpr std::uint32_t kSpiReceived = 1U << 2;
+
 struct WatchdogRegisters {  // CMSDK APB watchdog
   volatile std::uint32_t load;
   volatile std::uint32_t value;

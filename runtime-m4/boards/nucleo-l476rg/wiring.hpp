@@ -38,5 +38,6 @@ inline constexpr std::array<Bus, 1> kBuses{Bus{kI2c1, 8, 9, {6}, {7}}};
 inline constexpr SerialPins kLink{kUsart2, kPortA, 7, 2, 3};  // to the ST-LINK
 inline constexpr SerialPins kPlayer{kUsart1, kPortA, 7, 9};   // D8
 inline constexpr PanelPin kPanel{11, 5};
+inline constexpr SpiPins kSpi{13, 11, {kPortA, 6}, 5};  // D13, D11, D12
 
 }  // namespace robosync::boards::stm32l4::wiring

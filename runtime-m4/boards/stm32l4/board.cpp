@@ -7,6 +7,7 @@
 #include "runtime-m4/boards/stm32l4/echoes.hpp"
 #include "runtime-m4/boards/stm32l4/inputs.hpp"
 #include "runtime-m4/boards/stm32l4/pins.hpp"
+#include "runtime-m4/boards/stm32l4/spi.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
@@ -18,9 +19,9 @@ namespace {
 
 constexpr std::uint32_t kWatchdogCounts = iwdg::kHz * Board::kWatchdogMs / 1000;
 
-Board board;
-
 }  // namespace
+
+Board board;
 
 // Reads the reset flags and clears them: they accumulate over resets.
 Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
@@ -38,6 +39,7 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
       port::core::enable_interrupt(interrupt);
   for (const unsigned interrupt : wiring::kEchoInterrupts)
     port::core::enable_interrupt(interrupt);
+  port::core::enable_interrupt(spi::kInterrupt);
 }
 
 // A watchdog reset comes without warning, so it could not be recorded in memory.
@@ -45,23 +47,17 @@ link::ResetReason Board::reset_reason() const {
   return watchdog_reset_ ? ResetReason::watchdog : last_reset();
 }
 
-bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+bool Board::spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
                          std::span<std::byte> in) {
-  return bus < i2c_.size() && i2c_[bus].transfer(asks_ahead_, address, out, in);
+  return bus == 0 && parts::transfer(asks_ahead_, select, out, in);
 }
 
-// The address comes with the transfer.
-bool Board::i2c_select(std::uint8_t bus, std::uint8_t /*address*/,
-                       std::span<const std::byte> page) {
-  return bus < i2c_.size() && i2c_[bus].select(page);
+void Board::spi_open(std::uint8_t /*bus*/, std::uint16_t select) {
+  parts::open(select);
 }
 
-bool Board::i2c_busy() const {
-  return is_any_busy(i2c_);
-}
-
-BusState Board::buses() const {
-  return state_of(i2c_);
+void Board::spi_close() {
+  parts::close();
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -74,6 +70,15 @@ void Board::ping(std::uint16_t trigger, std::uint16_t echo) {
 
 std::uint32_t Board::take_echo(std::uint16_t echo) {
   return echoes::take(echo);
+}
+
+bool Board::take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                       Turned& turned) {
+  return echoes::take_edges(number, a, b, most, ~port::read_clock(), turned);
+}
+
+void Board::end_edges(unsigned number) {
+  echoes::end_edges(number);
 }
 
 bool Board::analog(std::uint16_t pin, std::uint16_t& voltage) {
@@ -119,6 +124,7 @@ void Board::watchdog_kick() {
 robosync::boards::Board& robosync_board = robosync::boards::stm32l4::board;
 
 void robosync::boards::switch_outputs_off() {
+  stm32l4::parts::switch_off();
   stm32l4::pins::switch_off();
 }
 
@@ -131,8 +137,7 @@ void NMI_Handler();
 void Link_Handler();
 void Player_Handler();
 void Echo_Handler();
-void HeaderBus_Handler();
-void OwnBus_Handler();
+void Spi_Handler();
 
 // Uncorrectable damage of the flash. Unless it is in the store, the code that runs is not the code that was written.
 void NMI_Handler() {
@@ -156,14 +161,8 @@ void Echo_Handler() {
   robosync::boards::stm32l4::echoes::on_edge(~robosync::port::read_clock());
 }
 
-void HeaderBus_Handler() {
-  robosync::boards::stm32l4::board.i2c(0).on_interrupt();
-}
-
-// For the last bus. A board with one bus has no vector for this.
-void OwnBus_Handler() {
-  using robosync::boards::stm32l4::wiring::kBuses;
-  robosync::boards::stm32l4::board.i2c(kBuses.size() - 1).on_interrupt();
+void Spi_Handler() {
+  robosync::boards::stm32l4::parts::on_interrupt();
 }
 
 }  // extern "C"

@@ -28,16 +28,26 @@ public:
   const char* name() const override { return wiring::kName; }
   link::ResetReason reset_reason() const override;
   const policy::BoardPins& pins() const override { return boards::kPins; }
+  static_assert(!meet(kOutputs, kInputs) && !meet(kOutputs, kAnalog), "let_go() does nothing here");
   bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
                     std::span<std::byte> in) override;
+  bool i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
+                    std::span<std::byte> in) override;
+  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
+                    std::span<std::byte> in) override;
+  void spi_open(std::uint8_t bus, std::uint16_t select) override;
+  void spi_close() override;
   BusState buses() const override;
   bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
-  bool i2c_asks_ahead() const override { return true; }
-  void i2c_ask(bool ahead) override { asks_ahead_ = ahead; }
-  bool i2c_busy() const override;
+  bool buses_ask_ahead() const override { return true; }
+  void ask_buses(bool ahead) override { asks_ahead_ = ahead; }
+  bool buses_busy() const override;
   bool input(std::uint16_t pin) const override;
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
+  bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                  Turned& turned) override;
+  void end_edges(unsigned number) override;
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
@@ -72,5 +82,7 @@ private:
   std::array<I2c, wiring::kBuses.size()> i2c_ =
       all_buses(std::make_index_sequence<wiring::kBuses.size()>{});
 };
+
+extern Board board;
 
 }  // namespace robosync::boards::stm32l4

@@ -15,7 +15,6 @@ void set_up(const DmaChannel& channel, Register data) {
 // Inlined, because a sensor's thread has no stack to spare for another frame.
 [[gnu::always_inline]] inline void move(const DmaChannel& channel, std::uint32_t memory,
                                         std::size_t bytes, std::uint32_t direction) {
-  kDmaForget.write(0xFU << 4 * (channel.number - 1));
   channel.memory().write(memory);
   channel.count().write(static_cast<std::uint32_t>(bytes));
   channel.control().write(direction | DmaChannel::kOn);
@@ -57,27 +56,28 @@ void I2cMaster::begin(std::uint8_t address, std::span<const std::byte> out,
 // transfer. After lost arbitration there is nothing to stop. ES0250: a bus error means nothing for a master.
 Transfer I2cMaster::on_interrupt() {
   const std::uint32_t state = wires_.master.state().read();
-  wires_.master.forget().write(
-      state & (I2cRegisters::kRefused | I2cRegisters::kStopped | I2cRegisters::kBusError));
-  if ((state & I2cRegisters::kRefused) != 0) wrong_ = true;
   if ((state & I2cRegisters::kWritten) != 0) wires_.master.transfer().write(reading_);
+  constexpr std::uint32_t kNoted =
+      I2cRegisters::kRefused | I2cRegisters::kStopped | I2cRegisters::kBusError;
+  if ((state & (kNoted | I2cRegisters::kOutvoted)) == 0) return Transfer::goes_on;
+  wires_.master.forget().write(state & kNoted);
+  if ((state & (I2cRegisters::kRefused | I2cRegisters::kOutvoted)) != 0) wrong_ = true;
   if ((state & (I2cRegisters::kStopped | I2cRegisters::kOutvoted)) == 0) return Transfer::goes_on;
-  const bool outvoted = (state & I2cRegisters::kOutvoted) != 0;
-  const bool whole =
-      !wrong_ && !outvoted && (reading_ == 0 || wires_.to_memory.count().read() == 0);
-  if (whole) {
-    wires_.to_send.control().write(0);
-    wires_.to_memory.control().write(0);
-  } else {
+  if (wrong_ || (reading_ != 0 && wires_.to_memory.count().read() != 0)) [[unlikely]] {
     let_go();
+    return Transfer::failed;
   }
-  return whole ? Transfer::done : Transfer::failed;
+  wires_.to_send.control().write(0);
+  wires_.to_memory.control().write(0);
+  return Transfer::done;
 }
 
 // The master must be off for at least three bus clock cycles, which the read takes. That aborts the transfer and frees the lines.
+// A channel of the DMA that has failed stays off until its flags are cleared.
 void I2cMaster::switch_off() const {
   wires_.to_send.control().write(0);
   wires_.to_memory.control().write(0);
+  kDmaForget.write(wires_.to_send.flags() | wires_.to_memory.flags());
   wires_.master.control().write(0);
   static_cast<void>(wires_.master.control().read());
 }

@@ -13,7 +13,8 @@ namespace robosync::boards::stm32l4 {
 
 class I2cMaster {  // for AskedBus
 public:
-  constexpr explicit I2cMaster(const Bus& wires) : wires_(wires) {}
+  constexpr explicit I2cMaster(const Bus& wires)
+      : wires_(wires), lines_(1U << wires.clock | 1U << wires.data) {}
 
   // The port must have its clock.
   void start() const;
@@ -22,6 +23,7 @@ public:
   void let_go() const;
   bool clock_is_high() const { return is_high(wires_.clock); }
   bool data_is_high() const { return is_high(wires_.data); }
+  bool are_high() const { return (kPortOfI2c.levels().read() & lines_) == lines_; }
   void take_clock() const;
   void give_clock_back() const;
   void drive_clock(bool high) const;
@@ -32,6 +34,7 @@ private:
   void switch_off() const;
 
   Bus wires_;
+  std::uint32_t lines_;        // bits of the pins
   std::uint32_t reading_ = 0;  // command for the master after the write; 0: nothing is read
   bool wrong_ = false;         // the running transfer has failed
 };

@@ -9,6 +9,7 @@ extern "C" void Player_Handler();
 extern "C" void Echo_Handler();
 extern "C" void HeaderBus_Handler();
 extern "C" void OwnBus_Handler();
+extern "C" void Spi_Handler();
 
 namespace robosync::boards {
 
@@ -16,10 +17,11 @@ inline constexpr std::size_t kInterrupts = 82;
 
 constexpr auto used_interrupts() {
   using namespace stm32l4;
-  std::array<Interrupt, 2 + wiring::kEchoInterrupts.size() + 2 * wiring::kBuses.size()> used{};
+  std::array<Interrupt, 3 + wiring::kEchoInterrupts.size() + 2 * wiring::kBuses.size()> used{};
   std::size_t count = 0;
   used[count++] = {wiring::kLink.usart.interrupt, Link_Handler};
   used[count++] = {wiring::kPlayer.usart.interrupt, Player_Handler};
+  used[count++] = {spi::kInterrupt, Spi_Handler};
   for (const unsigned edges : wiring::kEchoInterrupts)
     used[count++] = {edges, Echo_Handler};
   for (std::size_t bus = 0; bus < wiring::kBuses.size(); ++bus) {

@@ -28,7 +28,7 @@ struct Spi1 {  // for PanelSignal
     rcc::give_clock(rcc::kApb2, rcc::kSpi1);
     spi::kDma.control().write(0);
     kDmaSelect.set_field(spi::kDma.number - 1, 4, spi::kDmaForSpi);
-    kDmaForget.write(0xFU << 4 * (spi::kDma.number - 1));
+    kDmaForget.write(spi::kDma.flags());
     spi::kDma.peripheral().write(static_cast<std::uint32_t>(spi::kData.address));
     spi::kDma.memory().write(port::bus_address(bytes.data()));
     spi::kDma.count().write(static_cast<std::uint32_t>(bytes.size()));

@@ -45,9 +45,13 @@ void low_at_once(const Timer& timer, unsigned channel) {
   timer.compare(channel).write(0);
 }
 
+void set(Port port, unsigned bit, bool high) {
+  port.change().write(1U << (high ? bit : bit + 16));
+}
+
 // Sets the level before the pin becomes an output.
 void hold_high(const Pin& pin) {
-  pin.port.change().write(1U << pin.bit);
+  set(pin.port, pin.bit, true);
   pin.port.pulls().set_field(pin.bit, 2, 0);
   pin.port.mode().set_field(pin.bit, 2, kModeOfOutput);
 }
@@ -95,12 +99,24 @@ void hand_over(std::uint16_t pin, std::uint32_t function) {
   if (const Output* const output = find(pin)) set_function(*output, function);
 }
 
+void begin_select(std::uint16_t pin) {
+  if (const Output* const output = find(pin)) hold_high({output->port, output->bit});
+}
+
 void take_back(std::uint16_t pin) {
-  if (const Output* const output = find(pin)) set_function(*output, output->function);
+  const Output* const output = find(pin);
+  if (output == nullptr) return;
+  set_function(*output, output->function);
+  output->port.mode().set_field(output->bit, 2, kModeOfFunction);
 }
 
 void enable(std::uint16_t pin, bool on) {
-  if (pin == kEnable.pin) kEnable.port.change().write(1U << (on ? kEnable.bit + 16 : kEnable.bit));
+  if (pin == kEnable.pin) set(kEnable.port, kEnable.bit, !on);
+}
+
+void select(std::uint16_t pin, bool on) {
+  if (pin == kEnable.pin) return enable(pin, on);
+  if (const Output* const output = find(pin)) set(output->port, output->bit, !on);
 }
 
 std::uint32_t read(std::uint16_t pin) {

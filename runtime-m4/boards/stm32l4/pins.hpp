@@ -23,12 +23,17 @@ std::uint32_t read(std::uint16_t pin);
 // One pulse of 11 or 12 us, starting now; the timer ends it. [under a lock, as above]
 void pulse(std::uint16_t pin);
 
-// Gives the pin another function of its port, until take_back() returns it to its timer. It must give no pulses.
+// Gives the pin another function of its port, or makes it the select pin of a part on SPI, which is high, until take_back()
+// returns it to its timer. It must give no pulses.
 void hand_over(std::uint16_t pin, std::uint32_t function);
+void begin_select(std::uint16_t pin);
 void take_back(std::uint16_t pin);
 
 // Sets the pin at an enable input low (on) or high (off). No effect on other pins.
 void enable(std::uint16_t pin, bool on);
+
+// Sets a select pin low (on) or high: that pin, or the one at an enable input.
+void select(std::uint16_t pin, bool on);
 
 // All pins, immediately. [any processor state]
 void switch_off();

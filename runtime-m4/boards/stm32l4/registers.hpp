@@ -22,6 +22,7 @@ inline constexpr std::uint32_t kRunsOnPll = 0b11 << 2;
 inline constexpr Register kPll{0x4002'100C};
 // From MSI, which has 4 MHz after reset: times 40, divided by 2.
 inline constexpr std::uint32_t kPllOf80MHz = 0b01U | 40U << 8 | 1U << 24;
+inline constexpr Register kResetApb2{0x4002'1040};
 inline constexpr Register kAhb1{0x4002'1048};
 inline constexpr std::uint32_t kDma1 = 1U << 0;
 inline constexpr Register kAhb2{0x4002'104C};
@@ -172,19 +173,26 @@ inline constexpr std::uint32_t kClockByTwo = 1U << 18;
 
 struct DmaChannel {  // of DMA1
   unsigned number;   // from 1
-  // Inlined, because a sensor's thread has no stack to spare for a call when it begins a transfer.
-  [[gnu::always_inline]] constexpr Register at(std::uintptr_t offset) const {
-    return {0x4002'0008 + std::uintptr_t{20} * (number - 1) + offset};
-  }
-  [[gnu::always_inline]] constexpr Register control() const { return at(0); }
-  constexpr Register count() const { return at(4); }  // bytes that are left
-  constexpr Register peripheral() const { return at(8); }
-  constexpr Register memory() const { return at(12); }
+  std::uintptr_t base;
+  constexpr DmaChannel(unsigned from_1)  // NOLINT(google-explicit-constructor)
+      : number(from_1), base(0x4002'0008 + std::uintptr_t{20} * (from_1 - 1)) {}
+  constexpr Register control() const { return {base}; }
+  constexpr Register count() const { return {base + 4}; }  // bytes that are left
+  constexpr Register peripheral() const { return {base + 8}; }
+  constexpr Register memory() const { return {base + 12}; }
 
   static constexpr std::uint32_t kOn = 1U << 0;
   static constexpr std::uint32_t kBytesFromMemory = 1U << 7 | 1U << 4;
   static constexpr std::uint32_t kBytesToMemory = 1U << 7;
+  static constexpr std::uint32_t kInterrupts =
+      1U << 1 | 1U << 3;  // when all bytes are moved, or it fails
+  // Its flags in kDmaState.
+  constexpr std::uint32_t ended() const { return 1U << (4 * (number - 1) + 1); }
+  constexpr std::uint32_t failed() const { return 1U << (4 * (number - 1) + 3); }
+  // … and in kDmaForget.
+  constexpr std::uint32_t flags() const { return 0xFU << 4 * (number - 1); }
 };
+inline constexpr Register kDmaState{0x4002'0000};
 inline constexpr Register kDmaForget{
     0x4002'0004};  // 4 bits a channel: a channel that failed stays off until they are cleared
 inline constexpr Register kDmaSelect{0x4002'00A8};  // 4 bits a channel; channel 1 has the lowest
@@ -268,7 +276,8 @@ inline constexpr Usart kUsart1{0x4001'3800, 37, rcc::kApb2, rcc::kUsart1};
 inline constexpr Usart kUsart2{0x4000'4400, 38, rcc::kApb1, rcc::kUsart2};
 inline constexpr Usart kUart4{0x4000'4C00, 52, rcc::kApb1, rcc::kUart4};
 
-namespace spi {  // SPI1, for a panel of lights; it has no clock pin, and receives nothing
+// SPI1: for a panel of lights, without a clock pin, and receiving nothing; or for parts. Both need pin 11 of the header.
+namespace spi {
 inline constexpr Register kControl{0x4001'3000};
 inline constexpr std::uint32_t kHz = kClockHz / 32;
 // Transmit only; master, with the select pin ignored; enabled.
@@ -276,8 +285,16 @@ inline constexpr std::uint32_t kSendsAt2500kHz =
     0b11U << 14 | 0b11U << 8 | 1U << 6 | 0b100U << 3 | 1U << 2;
 inline constexpr Register kControl2{0x4001'3004};
 inline constexpr std::uint32_t kBytesByDma = 7U << 8 | 1U << 1;
+// Both ways; master, with the select pin ignored; enabled; mode 0. Twice as fast would be 1.25 MHz.
+inline constexpr std::uint32_t kBothWaysAt625kHz = 0b11U << 8 | 1U << 6 | 0b110U << 3 | 1U << 2;
+// … and a single byte in the FIFO counts as received.
+inline constexpr std::uint32_t kBytesByDmaBothWays = kBytesByDma | 1U << 12 | 1U << 0;
+inline constexpr Register kState{0x4001'3008};
+inline constexpr std::uint32_t kBusy = 1U << 7;
 inline constexpr Register kData{0x4001'300C};
 inline constexpr DmaChannel kDma{3};
+inline constexpr DmaChannel kDmaToMemory{2};
+inline constexpr unsigned kInterrupt = 12;  // of kDmaToMemory
 inline constexpr std::uint32_t kDmaForSpi = 1;
 }  // namespace spi
 

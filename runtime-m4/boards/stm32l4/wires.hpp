@@ -57,6 +57,12 @@ struct SerialPins {
   unsigned receive = 0;  // unused if the line only sends
 };
 
+struct SpiPins {                // of SPI1, with one function
+  std::uint16_t clock, output;  // pins for pulses
+  Pin input;
+  std::uint32_t function;
+};
+
 struct PanelPin {  // of SPI1
   std::uint16_t pin;
   std::uint32_t function;

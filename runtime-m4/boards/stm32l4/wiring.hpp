@@ -10,6 +10,7 @@
 //   kLink            the serial line that the board connects to USB as a serial port
 //   kPlayer          the serial line to a sound player: only its transmitter
 //   kPanel           SPI1's data pin, for a panel of lights; one of kOutputs
+//   kSpi             SPI1's pins, for parts; its input is one of kInputs, too
 //
 // Tables state their length: GCC 12 puts those whose length std::array deduces in RAM.
 #pragma once

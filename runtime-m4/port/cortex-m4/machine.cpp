@@ -80,8 +80,11 @@ void set_stack_window(Context& context, std::span<const std::byte> stack) {
 }
 
 void set_secluded(Context& context, std::span<const std::byte> stack) {
-  context.region = base_of(RegionNumber::stack_upper, word_of(stack.data()));
-  context.windows = policy::regions::size_field(kSecludedBits) | Context::kSecluded;
+  const std::uint32_t begin = word_of(stack.data());
+  const policy::regions::Region region =
+      policy::regions::cover(begin, begin + static_cast<std::uint32_t>(stack.size()));
+  context.region = base_of(RegionNumber::stack_upper, region.base);
+  context.windows = region.size_and_eighths | Context::kSecluded;
 }
 
 void make_first_frame(Context& context, const kernel::ThreadSpec& spec, std::uint32_t top,
@@ -104,9 +107,10 @@ void make_first_frame(Context& context, const kernel::ThreadSpec& spec, std::uin
 
 bool Machine::can_run(const kernel::ThreadSpec& spec) {
   if (spec.data_bytes != 0)
-    return !spec.privileged && spec.stack.size() == kSecludedStack &&
-           word_of(spec.stack.data()) % kSecludedStack == 0 &&
-           spec.data_bytes + kMinStack <= kSecludedStack && spec.data_bytes % 8 == 0;
+    return !spec.privileged &&
+           policy::regions::fits_region(word_of(spec.stack.data()),
+                                        static_cast<std::uint32_t>(spec.stack.size())) &&
+           spec.data_bytes + kMinStack <= spec.stack.size() && spec.data_bytes % 8 == 0;
   return spec.privileged || policy::regions::fits_window(
                                 word_of(spec.stack.data()),
                                 static_cast<std::uint32_t>(spec.stack.size()), kStackWindowBits);

@@ -38,10 +38,8 @@ inline constexpr std::size_t kUnprivilegedStackAlignment = (std::size_t{1} << kS
 inline constexpr std::size_t kMaxUnprivilegedStack =
     9 * kUnprivilegedStackAlignment;  // fits a window wherever it begins
 
-// The stack of a secluded thread (ThreadSpec::data_bytes) is a single region. The other region of the
-// window closes the rest of RAM.
-inline constexpr unsigned kSecludedBits = 10;
-inline constexpr std::size_t kSecludedStack = std::size_t{1} << kSecludedBits;
+// The stack of a secluded thread (ThreadSpec::data_bytes) is covered exactly by eighths of a single region. The other region of
+// the window closes the rest of RAM.
 
 // Room for alignment and guard, the core's frame with FPU registers, and what switch.S saves.
 inline constexpr std::size_t kFrame = 104;
@@ -56,7 +54,7 @@ struct Context {
   // window; for a secluded one, its stack.
   std::uint32_t region = 0;
   // For an unprivileged thread: size and eighths of the lower region, and in the upper half those of
-  // the upper region; for a secluded one, the size of its stack, and kSecluded.
+  // the upper region; for a secluded one, the size and the eighths of its stack, and kSecluded.
   std::uint32_t windows = 0;
   static constexpr std::uint32_t kSecluded = 1U << 22;  // no bit of a size or of eighths
 };

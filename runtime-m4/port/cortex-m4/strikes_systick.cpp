@@ -60,7 +60,7 @@ void restart(std::uint32_t counts, std::uint32_t then) {
 }  // namespace
 
 void begin(std::uint32_t counts) {
-  const Alone alone;
+  Alone alone;
   if (sleeps) restart(std::max(counts, kShortest), hooks::kTickCounts);
   sleeps = false;
 }
@@ -68,7 +68,7 @@ void begin(std::uint32_t counts) {
 // The longest period follows the sleep, so that no counts are lost if the core wakes up late.
 void sleep_for(std::uint32_t counts) {
   if (counts <= hooks::kTickCounts) return;  // the next tick ends the sleep
-  const Alone alone;
+  Alone alone;
   restart(counts, kLongestSleep);
   sleeps = true;
 }
@@ -76,6 +76,6 @@ void sleep_for(std::uint32_t counts) {
 }  // namespace robosync::port::strikes
 
 std::uint32_t robosync_read_clock() {
-  const robosync::port::Alone alone;
+  robosync::port::Alone alone;
   return robosync::port::strikes::read();
 }

@@ -31,7 +31,6 @@ inline constexpr std::size_t kMinStack = 0;     // a fiber has its own host-size
 inline constexpr std::size_t kArenaScale = 16;  // for larger pointers and the fibers' state
 inline constexpr std::size_t kUnprivilegedStackAlignment = 64;  // as on the board
 inline constexpr std::size_t kMaxUnprivilegedStack = 576;
-inline constexpr std::size_t kSecludedStack = 1024;
 
 // The host closes no memory.
 struct Areas {

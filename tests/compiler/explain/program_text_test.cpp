@@ -287,3 +287,26 @@ TEST_CASE("what the modules of a program do is told as if it stood in the progra
   CHECK_THAT(text, Contains("DEFINE waveit (line 10 of guard.rsl) means:") &&
                        Contains("DEFINE nod (line 14 of guard.rsl) means:") && !Contains("unused"));
 }
+
+TEST_CASE("what moves has its limits, its halt and its release, and lamps have none") {
+  const std::string text = told("AT START DO\n  MOVE arm TO 10deg\nEND", R"({"actuators": [
+    {"name": "arm", "device": "servo", "pin": 10, "safe": "coast", "on_release": "rest",
+     "limits": {"SPEED": "100deg/s", "ACCELERATION": "200deg/s2"}},
+    {"name": "neck", "device": "servo", "pin": 11},
+    {"name": "wheel", "device": "motor", "pins": [4, 5], "limits": {"SPEED": "50%"}},
+    {"name": "lamp", "device": "pwm", "pin": 6}, {"name": "face", "type": "VIRTUAL", "device": "face"}]})");
+  CHECK_THAT(
+      text,
+      Contains("\nWhat moves, as robot.json says:\n") &&
+          Contains(
+              "  arm: It goes no faster than 100deg/s. Its speed changes by at most 200deg/s2. "
+              "In a halt it goes limp; when its response ends, it goes to its rest position.\n") &&
+          Contains("  neck: In a halt it ") &&
+          Contains("  wheel: It goes no faster than 50%. In a halt it is off; when its response "
+                   "ends, it is off.\n") &&
+          Contains("`rsc resume`"));
+  CHECK_THAT(text, !Contains("lamp:") && !Contains("face:"));
+  CHECK_THAT(told("AT START DO\n  LOG \"a\"\nEND",
+                  R"({"actuators": [{"name": "lamp", "device": "pwm", "pin": 6}]})"),
+             !Contains("What moves"));
+}

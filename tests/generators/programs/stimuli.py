@@ -1,7 +1,9 @@
 """What robots are fed: readings at program times, some drawn with fixed seeds."""
 
 import itertools
+import math
 import random
+import zlib
 from typing import NamedTuple
 
 # Channels that programs read, with the values worth drawing: edges of ranges and of the rules.
@@ -148,4 +150,68 @@ def heard(random_, sounds_):
                 readings.append(Reading(at, channel, new))
             last[channel] = new
         at += lasts
+    return readings
+
+
+# What is said, as own_words hears it: levels of 20 bands in steps of 1.5 dB (runtime-m4/drivers/spectrum.hpp). A word is where two
+# loud bands go, from its beginning to its end.
+LISTENING_UNITS = {f"microphone.BANDS_{i}": "" for i in range(1, 5)}  # of tests/e2e/programs/listening.json
+BANDS, IN_VALUE, MOST_LEVEL, LOUD, ROOM, FRAME_MS = 20, 5, 63, 45, 6, 20
+SPOKEN = {"hello": ((2, 4, 6, 5), (11, 12, 16, 10)), "dance": ((7, 6, 3, 3), (18, 17, 12, 9)),
+          "abracadabra": ((3, 6, 3, 7), (9, 15, 16, 8)), "sleep": ((5, 3, 2, 6), (14, 14, 18, 12))}
+UNTAUGHT = ((3, 3, 9, 4), (15, 9, 14, 18))
+SAMPLES, LONG_SAMPLES = (28, 33, 39), (80, 86, 92)  # frames
+
+
+def along(way, part):
+    i = min(int(part * 3), 2)
+    return way[i] + (way[i + 1] - way[i]) * (part * 3 - i)
+
+
+def together(a, b):
+    return 2 * math.log2(2 ** (a / 2) + 2 ** (b / 2))
+
+
+def levels(word, part, loud, noise):
+    tones = (loud - min(2 * (band - along(word[0], part)) ** 2, 2 * (band - along(word[1], part)) ** 2 + 6) for band in range(BANDS))
+    return [min(MOST_LEVEL, max(0, round(together(tone, noise)))) for tone in tones]
+
+
+def said(word, frames, loud=LOUD, noise=ROOM, hold=1):
+    """`hold`: so many frames in a row are the same, for a line that takes no more."""
+    return [levels(word, i // hold * hold / (frames - 1), loud, noise) for i in range(frames)]
+
+
+def samples_of(name):
+    return LONG_SAMPLES if name == "abracadabra" else SAMPLES
+
+
+def words_file():
+    """tests/e2e/programs/listening.words: as `rsc teach` would write it (docs/algorithms.md#the-file-of-words)."""
+    lines = ["robosync words 2"]
+    for name, word in SPOKEN.items():
+        lines.append(f"word {name} 400")
+        for frames in samples_of(name):
+            sample = said(word, frames, noise=0)
+            loudest = max(map(max, sample))
+            lines += [f"sample {frames}", *("".join(chr(ord("0") + loudest - level) for level in frame) for frame in sample)]
+    text = "".join(f"{line}\n" for line in lines)
+    return f"{text}sum {zlib.crc32(text.encode()):08x}\n"
+
+
+def words(seed):
+    """All these words, and one that was not taught, each a little faster or slower, louder or softer."""
+    random_ = random.Random(f"words {seed}")
+    quiet = levels(UNTAUGHT, 0, 0, ROOM)
+    frames = 60 * [quiet]
+    for name in random_.sample([*SPOKEN, None], len(SPOKEN) + 1):
+        count = random_.choice(samples_of(name)[:2])
+        frames += said(SPOKEN.get(name, UNTAUGHT), count, random_.choice((38, 42, 46)), hold=5) + 150 * [quiet]
+    readings, last = [], {}
+    for i, frame in enumerate(frames):
+        for value, channel in enumerate(LISTENING_UNITS):
+            new = sum(level << 6 * band for band, level in enumerate(frame[value * IN_VALUE:(value + 1) * IN_VALUE])) / 1000
+            if last.get(channel) != new:
+                readings.append(Reading(i * FRAME_MS, channel, new))
+            last[channel] = new
     return readings

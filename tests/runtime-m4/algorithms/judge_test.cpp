@@ -84,6 +84,41 @@ TEST_CASE("a module that wants more memory than it may have is refused, with the
   CHECK(refusal_of(wants(ROBOSYNC_MOST_BYTES + 1, 1)) == Refusal::no_room);
   CHECK(refusal_of(wants(1'000'000'000, 1)) == Refusal::no_room);
   CHECK(refusal_of(wants(1, 1'000'000'000)) == Refusal::no_room);
+  const auto with_room = [&](std::int32_t state, std::uint8_t room) {
+    return [=](auto& i) {
+      wants(state, 8)(i);
+      i.skin().room = room;
+    };
+  };
+  constexpr std::int32_t kFits = ROBOSYNC_MOST_BYTES + 3 * ROBOSYNC_ROOM - 8;
+  CHECK(refusal_of(with_room(kFits, 3)) == Refusal::none);
+  CHECK(refusal_of(with_room(kFits + 1, 3)) == Refusal::no_room);
+  CHECK(refusal_of(with_room(kFits, 2)) == Refusal::no_room);
+}
+
+TEST_CASE("what a module was taught must be there, and not be too much") {
+  robosync_module learner = *algorithms::find_module(0);
+  learner.learns = 1;
+  const test::OtherModule other(learner);
+  const auto refused = [&](std::size_t after, std::int32_t count) {
+    Judged judged;
+    std::vector<vm::Value> constants(judged.image.constants.begin(), judged.image.constants.end());
+    constants.resize(judged.skin().address + std::size_t{learner.parameters});
+    constants.push_back(count);
+    constants.resize(constants.size() + after);
+    judged.image.constants = constants;
+    return judged.refusal([](auto&) {});
+  };
+  CHECK(refused(0, 0) == Refusal::none);
+  CHECK(refused(20, 20) == Refusal::none);
+  CHECK(refused(20, 21) == Refusal::bad_index);
+  CHECK(refused(20, -1) == Refusal::bad_index);
+  CHECK(refused(ROBOSYNC_MOST_CONSTANTS + 1, ROBOSYNC_MOST_CONSTANTS) == Refusal::none);
+  CHECK(refused(ROBOSYNC_MOST_CONSTANTS + 1, ROBOSYNC_MOST_CONSTANTS + 1) == Refusal::no_room);
+  CHECK(refusal_of([&](auto& i) {
+          i.image.constants =
+              i.image.constants.first(i.skin().address + std::size_t{learner.parameters});
+        }) == Refusal::bad_index);
 }
 
 TEST_CASE("every module keeps to the interface's limits") {
@@ -103,7 +138,8 @@ TEST_CASE("every module keeps to the interface's limits") {
       CHECK((range.least <= range.usual && range.usual <= range.most));
       usual.push_back(range.usual);
     }
-    CHECK(module->state_bytes(usual.data()) + module->scratch_bytes(usual.data()) <=
-          ROBOSYNC_MOST_BYTES);
+    const std::uint32_t most =
+        ROBOSYNC_MOST_BYTES + (module->learns != 0 ? 9U : 0U) * ROBOSYNC_ROOM;
+    CHECK(module->state_bytes(usual.data()) + module->scratch_bytes(usual.data()) <= most);
   }
 }

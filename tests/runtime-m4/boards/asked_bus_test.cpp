@@ -87,6 +87,11 @@ struct Bus : Model {
     got.fill(0_b);
     return this->bus.transfer(false, who, std::array{from}, std::span(got).first(count));
   }
+  // From the same device: three registers, and then ten.
+  bool two(bool ahead, std::byte first, std::byte second) {
+    if (!ahead) got.fill(0_b);
+    return this->bus.read_two(ahead, device(), {first, second, 3}, std::span(got).first(13));
+  }
   bool put(bool ahead, std::byte to, std::byte value) {
     return this->bus.transfer(ahead, device(), std::array{to, value}, {});
   }
@@ -280,7 +285,7 @@ TEMPLATE_TEST_CASE(
     "a bus: what is too long is refused, and too many requests leave those that run alone", "",
     MicrobitBus, L475Bus<1>, L475Bus<2>) {
   Bus<TestType> bus;
-  std::array<std::byte, 17> long_in{};
+  std::array<std::byte, 19> long_in{};  // with what is written, one too many
   CHECK_FALSE(bus.bus.transfer(true, bus.device(), std::array{1_b}, long_in));
   CHECK_FALSE(bus.bus.transfer(true, bus.device(), std::array<std::byte, 20>{}, {}));
   CHECK_FALSE(bus.bus.transfer(true, bus.device(), {}, std::span(long_in).first(2)));
@@ -338,6 +343,108 @@ TEMPLATE_TEST_CASE("a bus: of a device with pages each reading is of its own pag
   CHECK_FALSE(read(false, 3_b));
   const std::array<std::byte, boards::kMostSelected + 1> too_long{};
   CHECK_FALSE(bus.bus.select(too_long));
+}
+
+TEMPLATE_TEST_CASE("a bus: two blocks of registers are one request, and nobody comes between them",
+                   "", MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  for (unsigned round = 0; round < 2; ++round) {
+    bus.written.clear();
+    CHECK_FALSE(bus.two(true, 0x10_b, 0x22_b));
+    CHECK_FALSE(bus.ask(0x30_b));
+    CHECK_FALSE(bus.two(true, 0x10_b, 0x28_b));  // only the second block differs
+    bus.run(2000);
+    CHECK(bus.written == std::vector{std::vector{0x10_b}, std::vector{0x22_b}, std::vector{0x30_b},
+                                     std::vector{0x10_b}, std::vector{0x28_b}});
+    for (const unsigned second : {0x22U, 0x28U, 0x22U}) {
+      CHECK(bus.two(false, 0x10_b, static_cast<std::byte>(second)));
+      CHECK(std::equal(bus.got.begin(), bus.got.begin() + 3, bus.registers.begin() + 0x10));
+      CHECK(std::equal(bus.got.begin() + 3, bus.got.begin() + 13, bus.registers.begin() + second));
+    }
+    bus.registers[0x11] ^= 0xFF_b;
+    bus.registers[0x23] ^= 0xFF_b;
+  }
+  CHECK_FALSE(bus.two(false, 0x11_b, 0x22_b));  // was not asked for
+  CHECK_FALSE(bus.collect(0x10_b));
+  std::array<std::byte, 19> in{};
+  CHECK_FALSE(bus.bus.read_two(true, bus.device(), {0x10_b, 0x22_b, 3}, in));
+  CHECK_FALSE(bus.bus.read_two(true, bus.device(), {0x10_b, 0x22_b, 3}, std::span(in).first(3)));
+  CHECK_FALSE(bus.bus.is_busy());
+  CHECK_FALSE(bus.bus.read_two(true, bus.device(), {0x10_b, 0x22_b, 3}, std::span(in).first(18)));
+  bus.run(1000);
+  CHECK(bus.bus.read_two(false, bus.device(), {0x10_b, 0x22_b, 3}, std::span(in).first(18)));
+  CHECK(in[17] == bus.registers[0x22 + 14]);
+}
+
+TEMPLATE_TEST_CASE("a bus: of two blocks either both are there or none", "", MicrobitBus,
+                   L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.refuses_after = 0;  // the first block is refused, so the second is not read
+  bus.two(true, 0x10_b, 0x22_b);
+  bus.run(1000);
+  CHECK_FALSE(bus.bus.is_busy());
+  CHECK_FALSE(bus.two(false, 0x10_b, 0x22_b));
+  bus.refuses_after = ~0U;
+  for (const unsigned after : {40U, 250U}) {  // in the first block, in the second
+    CAPTURE(after);
+    bus.written.clear();
+    bus.two(true, 0x10_b, 0x22_b);
+    bus.ask(0x30_b);
+    bus.run(after);
+    bus.holds_clock = true;
+    bus.run(1000);
+    bus.holds_clock = false;
+    CHECK_FALSE(bus.two(false, 0x10_b, 0x22_b));  // is given up
+    bus.run(400);
+    CHECK(bus.written.back() == std::vector{0x30_b});
+    CHECK(bus.collect(0x30_b));
+    CHECK(bus.got_from(0x30));
+    bus.two(true, 0x10_b, 0x22_b);
+    bus.run(1000);
+    CHECK(bus.two(false, 0x10_b, 0x22_b));
+    CHECK(bus.got_from(0x10));
+  }
+}
+
+TEMPLATE_TEST_CASE("a bus: a page whose selection is given up is not that of the next request", "",
+                   MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  bus.select(3_b);
+  bus.ask(kPaged, 1);
+  bus.run(30);
+  bus.holds_clock = true;
+  bus.run(1000);
+  bus.holds_clock = false;
+  bus.select(3_b);
+  CHECK_FALSE(bus.collect(kPaged, 1));
+  bus.written.clear();
+  bus.ask(0x30_b);
+  bus.run(400);
+  CHECK(bus.written == std::vector(1, std::vector{0x30_b}));
+  CHECK(bus.collect(0x30_b));
+  CHECK(bus.got_from(0x30));
+}
+
+// As one sensor stays silent while others change what they read.
+TEMPLATE_TEST_CASE("a bus: whatever the order in which its users come, each gets its own answer",
+                   "", MicrobitBus, L475Bus<1>, L475Bus<2>) {
+  Bus<TestType> bus;
+  unsigned seed = 12;
+  for (unsigned round = 0; round < 60; ++round) {
+    std::vector<std::byte> asked;
+    for (unsigned i = 0; i < 3; ++i) {
+      seed = seed * 1103515245 + 12345;
+      asked.push_back(static_cast<std::byte>(seed >> 16 & 0x1F));
+      CHECK_FALSE(bus.ask(asked.back(), 1));
+      if (round % 3 == 0) bus.put(false, 0x60_b, asked.back());
+      if (round % 5 == 0) bus.ask_of(0x33, asked.back());
+    }
+    bus.run(2500);
+    for (const unsigned i : {seed >> 18 & 1, 2U, 0U, 1U}) {
+      CHECK(bus.collect(asked[i], 1));
+      CHECK(bus.got_from(std::to_integer<unsigned>(asked[i]), 1));
+    }
+  }
 }
 
 TEMPLATE_TEST_CASE("a bus: what is written each time goes out each time", "", MicrobitBus,

@@ -1,5 +1,5 @@
-// The boards' trigger and echo code against models of the peripherals: the pulse, the length of an echo, and anything else
-// that a wire can do. The models were written from RM0351 and from Nordic's Product Specification, by the author of the
+// The boards' trigger and echo code, and that which counts the edges of encoders, against models of the peripherals: the pulse, the
+// length of an echo, the edges of a wheel, and anything else that a wire can do. The models were written from RM0351 and from Nordic's Product Specification, by the author of the
 // drivers.
 #include "runtime-m4/boards/stm32l4/echoes.hpp"
 
@@ -39,6 +39,11 @@ struct EdgesOfL475 : tests::Stm32Timers {
     boards::stm32l4::echoes::ping(trigger, echo);
   }
   static std::uint32_t take(std::uint16_t echo) { return boards::stm32l4::echoes::take(echo); }
+  bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                  boards::Turned& turned) const {
+    return boards::stm32l4::echoes::take_edges(number, a, b, most, 80 * now, turned);
+  }
+  static void end_edges(unsigned number) { boards::stm32l4::echoes::end_edges(number); }
 
   std::uint32_t read(std::uintptr_t address) override {
     if (address == 0x4002'1060) return system_clocks;
@@ -96,11 +101,12 @@ struct EdgesOfL475 : tests::Stm32Timers {
 // GPIOTE, PPI and TIMER3.
 struct EdgesOfMicrobit : tests::Nrf52833 {
   static constexpr std::uint16_t kTrigger = 0, kEcho = 5, kOtherTrigger = 14, kOther = 11;
-  const std::map<std::uint16_t, Pin> pins{{0, {0, 2}}, {14, {0, 1}}, {5, {0, 14}}, {11, {0, 23}}};
+  const std::map<std::uint16_t, Pin> pins{{0, {0, 2}},   {14, {0, 1}}, {13, {0, 17}}, {5, {0, 14}},
+                                          {11, {0, 23}}, {8, {0, 10}}, {9, {0, 9}}};
   static constexpr std::uintptr_t kGpiote = 0x4000'6000, kPpi = 0x4001'F000, kTimer = 0x4001'A000;
 
   EdgesOfMicrobit() {
-    for (const std::uint16_t pin : {kEcho, kOther})
+    for (const std::uint16_t pin : {kEcho, kOther, std::uint16_t{8}, std::uint16_t{9}})
       wire(pins.at(pin), false);
     boards::microbit::pins::start();
     boards::microbit::inputs::start();
@@ -110,6 +116,11 @@ struct EdgesOfMicrobit : tests::Nrf52833 {
     boards::microbit::echoes::ping(trigger, echo);
   }
   static std::uint32_t take(std::uint16_t echo) { return boards::microbit::echoes::take(echo); }
+  static bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                         boards::Turned& turned) {
+    return boards::microbit::echoes::take_edges(number, a, b, most, turned);
+  }
+  static void end_edges(unsigned number) { boards::microbit::echoes::end_edges(number); }
 
   std::uint32_t read(std::uintptr_t address) override {
     if (address >= kGpiote + 0x100 && address < kGpiote + 0x120)
@@ -399,4 +410,165 @@ TEMPLATE_TEST_CASE("echo: a servo has the trigger pin when the sensor is gone", 
   for (unsigned us = 0; us < 20'000; ++us, chip.pass_one())
     high += chip.is_triggered(TestType::kTrigger) ? 1U : 0U;
   CHECK(high == 1500);
+}
+
+TEST_CASE(
+    "echo: microbit: three sensors measure at the same time, and no other pin is one's echo") {
+  EdgesOfMicrobit chip;
+  const std::map<std::uint16_t, std::uint16_t> triggers{{5, 0}, {11, 14}, {8, 13}};
+  for (const auto& [echo, trigger] : triggers) {
+    EdgesOfMicrobit::ping(trigger, echo);
+    CHECK(chip.is_triggered(trigger));
+    let_pass(chip, 30);
+    CHECK_FALSE(chip.is_triggered(trigger));
+  }
+  for (const auto& [echo, trigger] : triggers)
+    set_wire(chip, true, echo);
+  for (const auto& [echo, trigger] : triggers) {
+    let_pass(chip, 500);
+    set_wire(chip, false, echo);
+  }
+  CHECK(EdgesOfMicrobit::take(5) == 500);
+  CHECK(EdgesOfMicrobit::take(8) == 1000);
+  CHECK(EdgesOfMicrobit::take(11) == 1500);
+  const auto is_one = [](std::uint16_t pin) { return pin == 5 || pin == 8 || pin == 11; };
+  for (std::uint16_t pin = 0; pin < 70; ++pin) {
+    CAPTURE(pin);
+    if (is_one(pin)) continue;
+    EdgesOfMicrobit::ping(0, pin);
+    CHECK_FALSE(chip.is_triggered(0));
+    CHECK(EdgesOfMicrobit::take(pin) == 0);
+  }
+}
+
+namespace {
+
+constexpr unsigned kMost = 50;
+
+// Both wires of an encoder, a turn at a time: A is ahead of B by a quarter of a pulse, or behind it.
+template <typename Chip>
+struct Wheel {
+  explicit Wheel(Chip& of, unsigned number_of = 0) : chip(of), number(number_of) {
+    chip.set(Chip::kOther, false);
+    chip.set(Chip::kEcho, false);
+    REQUIRE(take());
+    REQUIRE(turned.begun);
+  }
+  ~Wheel() { Chip::end_edges(number); }
+  bool take(unsigned most = kMost) {
+    return chip.take_edges(number, Chip::kEcho, static_cast<std::uint8_t>(Chip::kOther), most,
+                           turned);
+  }
+  void turn(bool forward, unsigned us = 10) {
+    for (const bool high : {true, false}) {
+      set_wire(chip, high, forward ? Chip::kEcho : Chip::kOther);
+      let_pass(chip, us);
+      set_wire(chip, high, forward ? Chip::kOther : Chip::kEcho);
+      let_pass(chip, us);
+    }
+  }
+  Chip& chip;
+  unsigned number;
+  boards::Turned turned{};
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("edges: with two pins they count forward or back, with the time of the last", "",
+                   EdgesOfL475, EdgesOfMicrobit) {
+  TestType chip;
+  Wheel<TestType> wheel(chip);
+  CHECK(wheel.turned.edges == 0);
+  for (unsigned i = 0; i < 20; ++i)
+    wheel.turn(true);
+  let_pass(chip, 70);
+  REQUIRE(wheel.take());
+  CHECK_FALSE(wheel.turned.begun);
+  CHECK(wheel.turned.edges == 40);
+  CHECK(wheel.turned.ago == 90);  // the last edge of A, B followed 10 us later
+  for (unsigned i = 0; i < 23; ++i)
+    wheel.turn(false);
+  REQUIRE(wheel.take());
+  CHECK(wheel.turned.edges == -6);
+  CHECK(chip.interrupts == 86);
+  // It trembles at an edge of A: back and forth.
+  for (unsigned i = 0; i < 10; ++i) {
+    set_wire(chip, true);
+    set_wire(chip, false);
+  }
+  REQUIRE(wheel.take());
+  CHECK(wheel.turned.edges == -6);
+}
+
+TEMPLATE_TEST_CASE("edges: with one pin all count forward, and only those from the beginning on",
+                   "", EdgesOfL475, EdgesOfMicrobit) {
+  TestType chip;
+  boards::Turned turned{};
+  const auto take = [&] {
+    return chip.take_edges(1, TestType::kEcho, vm::kNoSecondPin, kMost, turned);
+  };
+  for (const bool high : {true, false, true})
+    set_wire(chip, high);
+  for (unsigned program = 0; program < 2; ++program) {
+    REQUIRE(take());
+    CHECK(turned.begun);
+    CHECK(turned.edges == 0);
+    const unsigned before = chip.interrupts;
+    for (unsigned i = 0; i < 7; ++i)
+      set_wire(chip, i % 2 != 0);
+    REQUIRE(take());
+    CHECK_FALSE(turned.begun);
+    CHECK(turned.edges == 7);
+    CHECK(chip.interrupts == before + 7);
+    TestType::end_edges(1);
+    for (unsigned i = 0; i < 7; ++i)
+      set_wire(chip, i % 2 == 0);
+    CHECK(chip.interrupts == before + 7);
+  }
+  CHECK_FALSE(chip.take_edges(0, 77, vm::kNoSecondPin, kMost, turned));
+}
+
+TEMPLATE_TEST_CASE("edges: as many as were allowed interrupt, whatever the wire does, and one more",
+                   "", EdgesOfL475, EdgesOfMicrobit) {
+  TestType chip;
+  Wheel<TestType> wheel(chip);
+  for (unsigned period = 0; period < 3; ++period) {
+    const unsigned before = chip.interrupts;
+    for (unsigned i = 0; i < 2000; ++i)
+      wheel.turn(true, 1);
+    CHECK(chip.interrupts <= before + kMost + 1);
+    CHECK_FALSE(wheel.take());
+  }
+  const std::int32_t counted = wheel.turned.edges;
+  for (unsigned i = 0; i < kMost / 2; ++i)
+    wheel.turn(true);
+  CHECK(wheel.take());
+  CHECK(std::abs(wheel.turned.edges - counted - static_cast<int>(kMost)) <= 1);
+}
+
+TEMPLATE_TEST_CASE("edges: an echo is measured meanwhile, and two encoders count at once", "",
+                   EdgesOfL475, EdgesOfMicrobit) {
+  TestType chip;
+  boards::Turned left{}, right{};
+  const auto take = [&] {
+    CHECK(chip.take_edges(0, TestType::kOther, vm::kNoSecondPin, kMost, left));
+    return chip.take_edges(1, TestType::kEcho, vm::kNoSecondPin, kMost, right);
+  };
+  chip.set(TestType::kOther, false);
+  CHECK(chip.take_edges(0, TestType::kOther, vm::kNoSecondPin, kMost, left));
+  TestType::ping(TestType::kTrigger, TestType::kEcho);
+  send_echo(chip, 600);
+  set_wire(chip, true, TestType::kOther);
+  CHECK(TestType::take(TestType::kEcho) == 600);
+  REQUIRE(take());
+  CHECK(left.edges == 1);
+  for (unsigned i = 0; i < 6; ++i) {
+    set_wire(chip, i % 2 == 0);
+    if (i < 3) set_wire(chip, i % 2 != 0, TestType::kOther);
+  }
+  REQUIRE(take());
+  CHECK(left.edges == 4);
+  CHECK(right.edges == 6);
+  for (const unsigned number : {0U, 1U})
+    TestType::end_edges(number);
 }

@@ -31,8 +31,8 @@ std::vector<std::uint16_t> edge_outputs() {
   std::vector<std::uint16_t> found;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
     if (compiler::board_names()[i] == "microbit-v2")
-      for (const auto& [first, last, power] : compiler::board_at(i).outputs)
-        for (std::uint16_t pin = first; pin <= last; ++pin)
+      for (const compiler::Board::Pins& pins : compiler::board_at(i).outputs)
+        for (std::uint16_t pin = pins.first; pin <= pins.last; ++pin)
           found.push_back(pin);
   return found;
 }
@@ -244,7 +244,7 @@ TEST_CASE(
   EdgeChip chip;
   CHECK(chip.at(kEnable) == Nrf52833::Level::high);
   edge::write(kEnable, 1500);  // gives no pulses, and does not go low
-  edge::let_go(kEnable);
+  edge::let_go(kEnable, boards::Reads::level);
   edge::take_back(kEnable);
   chip.pass(kNewest);
   CHECK(chip.at(kEnable) == Nrf52833::Level::high);

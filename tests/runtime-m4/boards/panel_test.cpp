@@ -28,8 +28,8 @@ std::vector<std::uint16_t> panel_pins(std::string_view board) {
   std::vector<std::uint16_t> found;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
     if (compiler::board_names()[i] == board)
-      for (const auto& [first, last, power] : compiler::board_at(i).panels)
-        for (std::uint16_t pin = first; pin <= last; ++pin)
+      for (const compiler::Board::Pins& pins : compiler::board_at(i).panels)
+        for (std::uint16_t pin = pins.first; pin <= pins.last; ++pin)
           found.push_back(pin);
   return found;
 }

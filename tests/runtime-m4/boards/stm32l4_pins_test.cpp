@@ -25,8 +25,8 @@ std::vector<std::uint16_t> outputs() {
   std::vector<std::uint16_t> found;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
     if (compiler::board_names()[i] == kName)
-      for (const auto& [first, last, power] : compiler::board_at(i).outputs)
-        for (std::uint16_t pin = first; pin <= last; ++pin)
+      for (const compiler::Board::Pins& pins : compiler::board_at(i).outputs)
+        for (std::uint16_t pin = pins.first; pin <= pins.last; ++pin)
           found.push_back(pin);
   return found;
 }

@@ -47,7 +47,10 @@ struct Gripper {
 // One program with a sensor on a ring, one with a servo there, one with nothing.
 struct Rings {
   static constexpr std::array<policy::PinRange, 1> kRings{{{0, 2}}};
-  Rings() { board.board_pins.analog = kRings; }
+  Rings() {
+    board.board_pins.analog = kRings;
+    board.board_pins.inputs = kRings;
+  }
   vm::Image image(const std::string& program, const std::string& wiring) {
     bytes.push_back(test::compile(program, wiring));
     vm::Image image;
@@ -59,9 +62,16 @@ struct Rings {
     const_cast<vm::Sensor&>(made.sensors[0]).address = pin;
     return made;
   }
+  vm::Image with_switch(std::uint16_t pin) {
+    vm::Image made = image(
+        "WHEN bumper IS closed DO LOG \"it\" END\n",
+        R"({"sensors": [{"name": "bumper", "type": "GPIO", "pin": 40, "device": "switch"}]})");
+    const_cast<vm::Sensor&>(made.sensors[0]).address = pin;
+    return made;
+  }
   std::vector<std::vector<std::byte>> bytes = [] {
     std::vector<std::vector<std::byte>> none;
-    none.reserve(8);
+    none.reserve(16);
     return none;
   }();
   kernel::Kernel kernel;
@@ -183,6 +193,70 @@ TEST_CASE("guard: a pin that both programs measure is not driven in between") {
   rings.guard.own(before);
   static_cast<void>(rings.handed());
   rings.guard.own(after);
+  CHECK(rings.handed().empty());
+}
+
+TEST_CASE("guard: an output whose level is read is let go for the program that reads it") {
+  Rings rings;
+  const vm::Image one = rings.with_switch(1), none = rings.image(kOfGrip, kFed);
+  const vm::Image motor = rings.image(
+      "AT START DO RUN wheel TO 50% END\n",
+      R"({"actuators": [{"name": "wheel", "type": "PWM", "pins": [0, 1], "device": "motor"}]})");
+  rings.guard.own(motor);
+  rings.guard.drive_either(0, -9000, 0);
+  REQUIRE(rings.board.pulse(1) == 9000);
+  std::vector<std::uint32_t> then;
+  rings.board.on_let_go = [&](std::uint16_t pin) { then.push_back(rings.board.pulse(pin)); };
+  rings.guard.own(one);
+  CHECK(rings.handed() == Rings::Handed{{1, true}});
+  CHECK(then == std::vector<std::uint32_t>{0});  // it was off before
+  CHECK(rings.board.read.at(1) == boards::Reads::level);
+  rings.board.writes.clear();
+  for (const std::int32_t pulse : {5000, -5000})
+    rings.guard.drive_either(0, pulse, 0);  // of the program before
+  CHECK(rings.board.writes.empty());
+  rings.guard.own(none);
+  CHECK(rings.handed() == Rings::Handed{{1, false}});
+  rings.guard.own(one);
+  rings.guard.disown();
+  CHECK(rings.handed() == Rings::Handed{{1, true}, {1, false}});
+}
+
+TEST_CASE("guard: a pin of which the next program reads something else is not driven in between") {
+  Rings rings;
+  const vm::Image voltage = rings.on(2), level = rings.with_switch(2);
+  for (unsigned turn = 0; turn < 2; ++turn) {
+    rings.guard.own(voltage);
+    CHECK(rings.board.read.at(2) == boards::Reads::voltage);
+    rings.guard.own(level);
+    CHECK(rings.board.read.at(2) == boards::Reads::level);
+  }
+  CHECK(rings.handed() == Rings::Handed{{2, true}, {2, true}, {2, true}, {2, true}});
+  rings.guard.own(level);
+  CHECK(rings.handed().empty());
+  rings.guard.disown();
+  CHECK(rings.handed() == Rings::Handed{{2, false}});
+}
+
+TEST_CASE("guard: a panel's pin is free of it before its level is read") {
+  Rings rings;
+  static constexpr std::array<policy::PinRange, 1> kPanels{{{0, 2}}};
+  rings.board.board_pins.panels = kPanels;
+  const vm::Image panel = rings.image(
+      "AT START DO LIGHT eyes red END\n",
+      R"({"board": "microbit-v2", "actuators": [{"name": "eyes", "pin": 1, "device": "ws2812_strip", "lights": 4}]})");
+  unsigned ended = 0;
+  rings.board.on_let_go = [&](std::uint16_t) { ended = rings.board.noting_panel.ends; };
+  rings.guard.own(panel);
+  rings.guard.own(rings.with_switch(1));
+  CHECK(ended == 1);
+}
+
+TEST_CASE("guard: an input that is no output is not let go") {
+  Rings rings;
+  for (const int pin : {3, 5, 40, 63, 64, 0xFFFF})
+    rings.guard.own(rings.with_switch(static_cast<std::uint16_t>(pin)));
+  rings.guard.disown();
   CHECK(rings.handed().empty());
 }
 

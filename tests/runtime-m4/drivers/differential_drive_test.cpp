@@ -7,6 +7,7 @@
 #include <rapidcheck.h>
 
 #include "runtime-m4/drivers/drivers.hpp"
+#include "tests/runtime-m4/drivers/drive.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 #include "tests/support/golden.hpp"
@@ -14,6 +15,7 @@
 
 using namespace robosync;
 using drivers::Order;
+using test::order;
 using vm::Action;
 using vm::Param;
 using vm::Value;
@@ -27,16 +29,6 @@ constexpr kernel::Time kSecond = 1'000'000;
 // The pulses of left forward, left backward, right forward, right backward.
 using Pulses = std::array<std::uint32_t, 4>;
 constexpr Pulses kOff{};
-
-Order order(Action action, std::initializer_list<std::pair<Param, Value>> params = {}) {
-  Order result;
-  result.action = action;
-  for (const auto& [param, value] : params) {
-    result.given = static_cast<std::uint8_t>(result.given | 1U << static_cast<unsigned>(param));
-    result.params[static_cast<std::size_t>(param)] = value;
-  }
-  return result;
-}
 
 // 40 cm/s with full power, 12 cm between the wheels, 20 cm/s without AT.
 vm::DriveParameters usual() {

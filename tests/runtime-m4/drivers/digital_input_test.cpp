@@ -1,4 +1,5 @@
 // Buttons and switches: from the level of a pin to readings, and the debouncing of contacts.
+#include <array>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -98,4 +99,56 @@ TEST_CASE("however a contact bounces, it is pressed once and released once, soon
     CHECK(std::stoull(said[1]) * kMillisecond <= contact.closes + kBouncing + kBetweenSamples);
     CHECK(std::stoull(said[2]) * kMillisecond <= contact.opens + kBouncing + kBetweenSamples);
   }
+}
+
+TEST_CASE("board_part: a touch of the logo and the temperature are readings of the board") {
+  Rig rig;
+  std::int32_t touched = 1, quarters = 80;
+  bool known = true;
+  rig.board.measure_of = [&](boards::Part part, std::int32_t& raw) {
+    raw = part == boards::Part::logo ? touched : quarters;
+    return known;
+  };
+  REQUIRE(rig.activate(test::compile(R"(
+WHEN logo IS pressed DO LOG "down" END
+WHEN logo IS released DO LOG "up" END
+WHEN thermometer TEMPERATURE > 21C DO LOG "warm" END
+)",
+                                     R"({"board": "microbit-v2", "sensors": [
+  {"name": "logo", "device": "logo"}, {"name": "thermometer", "device": "thermometer"}]})"))
+              .ok());
+  rig.run(15);
+  CHECK(logs(rig).empty());  // a result of before the program
+  touched = 0;
+  rig.run(100);
+  REQUIRE(logs(rig).size() == 1);
+  CHECK(logs(rig)[0].find("up") != std::string::npos);
+  touched = 1;
+  quarters = 85;
+  rig.run(3000);
+  REQUIRE(logs(rig).size() == 3);
+  CHECK(logs(rig)[1].find("down") != std::string::npos);
+  CHECK(logs(rig)[2].find("warm") != std::string::npos);
+  known = false;
+  rig.run(6000);
+  CHECK(rig.only("stale") != "");
+}
+
+TEST_CASE("an input that cannot measure an echo is refused as one's, and may be read") {
+  static constexpr std::array<policy::PinRange, 1> kEchoes{{{41, 41}}};
+  for (const int pin : {40, 41}) {
+    Rig rig;
+    rig.board.board_pins.echoes = kEchoes;
+    const std::string echo =
+        R"({"sensors": [{"name": "it", "type": "GPIO", "trigger": 3, "echo": )" +
+        std::to_string(pin) + R"(, "device": "hc-sr04"}]})";
+    const vm::Verdict verdict =
+        rig.activate(test::compile("WHEN it < 30cm DO LOG \"near\" END", echo));
+    CHECK(verdict.refusal == (pin == 41 ? vm::Refusal::none : vm::Refusal::no_input));
+  }
+  Rig rig;
+  rig.board.board_pins.echoes = kEchoes;
+  const std::string button =
+      R"({"sensors": [{"name": "it", "type": "GPIO", "pin": 40, "device": "button"}]})";
+  CHECK(rig.activate(test::compile(kOfButton, button)).ok());
 }

@@ -5,12 +5,15 @@
 #include <rapidcheck.h>
 
 #include "runtime-m4/layers/sampler.hpp"
+#include "tests/runtime-m4/drivers/drive.hpp"
 #include "tests/runtime-m4/rig.hpp"
 
 using namespace robosync;
 using drivers::ActuatorState;
 using drivers::Device;
 using drivers::Order;
+using test::Drive;
+using test::order;
 using vm::Param;
 using vm::Value;
 
@@ -24,59 +27,6 @@ std::vector<std::byte> bytes(std::initializer_list<int> values) {
     result.push_back(static_cast<std::byte>(value));
   return result;
 }
-
-Order order(vm::Action action, std::initializer_list<std::pair<Param, Value>> params = {}) {
-  Order result;
-  result.action = action;
-  for (const auto& [param, value] : params) {
-    result.given = static_cast<std::uint8_t>(result.given | 1U << static_cast<unsigned>(param));
-    result.params[static_cast<std::size_t>(param)] = value;
-  }
-  return result;
-}
-
-// An actuator driven without a kernel: time advances to the driver's next call.
-struct Drive {
-  explicit Drive(vm::DriverId id, Value min, Value max, Value speed_limit = vm::kValueMax)
-      : driver(drivers::driver(id)) {
-    wiring.driver = id;
-    wiring.pin = 7;
-    wiring.bus = 8;  // the second pin, for actuators with two
-    wiring.min = min;
-    wiring.max = max;
-    wiring.speed_limit = speed_limit;
-    vm::Image image;
-    image.actuators = std::span(&wiring, 1);
-    outputs.own(image);
-  }
-
-  Device device() { return {outputs, wiring, state}; }
-  void begin(const Order& what) { wake = driver.start(device(), what, now); }
-  // Until the command is done, or `until`.
-  void run(kernel::Time until = kernel::kForever) {
-    while (wake != drivers::kDone && wake <= until) {
-      REQUIRE(wake > now);  // otherwise it would never end
-      now = wake;
-      wake = driver.advance(device(), now);
-    }
-  }
-  std::uint32_t pulse() const { return board.pwm_read(7); }
-  // For actuators with two pins: negative on the second one.
-  int power() const { return static_cast<int>(pulse()) - static_cast<int>(board.pwm_read(8)); }
-  std::size_t setpoints() const {
-    const auto found = board.pulses.find(7);
-    return found == board.pulses.end() ? 0 : found->second.size();
-  }
-
-  const drivers::Driver& driver;
-  kernel::Kernel kernel;
-  test::NotingBoard board;
-  guard::OutputGuard outputs{kernel, board};
-  vm::Actuator wiring{};
-  ActuatorState state;
-  kernel::Time now = 1'000'000;
-  kernel::Time wake = 0;
-};
 
 // A sensor with a channel, on a bus whose answers the test gives.
 struct OnBus {
@@ -186,6 +136,27 @@ TEST_CASE("servo: a move at a speed takes way / speed, a setpoint every 20 ms, 5
   servo.run();
   CHECK(servo.now == 3'400'000);
   CHECK(servo.pulse() == 1500);
+}
+
+TEST_CASE("servo: its own pulses are at the ends of its range, also the other way round") {
+  const auto pulse_at = [](vm::ServoPulses pulses, Value degrees) {
+    Drive servo(vm::DriverId::servo, -90 * kDeg, 90 * kDeg);
+    const std::array traits = {vm::Trait{pulses.at_min, 0, vm::TraitKind::pulse_at_min},
+                               vm::Trait{pulses.at_max, 0, vm::TraitKind::pulse_at_max}};
+    vm::Image image;
+    image.actuators = std::span(&servo.wiring, 1);
+    image.traits = traits;
+    servo.outputs.own(image);
+    servo.begin(order(vm::Action::move, {{Param::to, degrees * kDeg}, {Param::over, 400}}));
+    servo.run();
+    return servo.pulse();
+  };
+  CHECK(pulse_at({600, 2400}, -90) == 600);
+  CHECK(pulse_at({600, 2400}, 90) == 2400);
+  CHECK(pulse_at({600, 2400}, 45) == 1950);
+  CHECK(pulse_at({2400, 600}, -90) == 2400);
+  CHECK(pulse_at({2400, 600}, 90) == 600);
+  CHECK(pulse_at({2400, 600}, 45) == 1050);
 }
 
 TEST_CASE("servo: BY is relative, has a direction, and ends at the range") {

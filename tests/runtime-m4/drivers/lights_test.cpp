@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "runtime-m4/drivers/pictures.hpp"
 #include "runtime-m4/guard/output_guard.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
@@ -72,6 +73,62 @@ TEST_CASE("lights: each word has its picture, and happy is the one that is drawn
   for (const auto& [word, settings] : face.at("words").items())
     CHECK(descriptor.at("words").contains(word));
   CHECK(Lit("SHOW face happy").now() == kHappy);
+}
+
+TEST_CASE("lights: numbers from 0 to 99, rounded; others show the nearest one") {
+  constexpr std::uint32_t kSeven = picture(
+      ".###."
+      "...#."
+      "..#.."
+      "..#.."
+      "..#..");
+  constexpr std::uint32_t kFortyTwo = picture(
+      "#..##"
+      "#...#"
+      "##.##"
+      ".#.#."
+      ".#.##");
+  CHECK(Lit("SHOW face 7").now() == kSeven);
+  CHECK(Lit("SHOW face TO (near X - 13.4)").now() == kSeven);  // 20 - 13.4
+  CHECK(Lit("SHOW face 42").now() == kFortyTwo);
+  CHECK(Lit("SHOW face TO (near X * 2.1)").now() == kFortyTwo);
+  CHECK(Lit("SHOW face TO (near X * 100)").now() == Lit("SHOW face 99").now());
+  CHECK(Lit("SHOW face TO (0 - near X)").now() == Lit("SHOW face 0").now());
+  std::set<std::uint32_t> seen;
+  for (vm::Value number = 0; number <= drivers::kMostShown; ++number)
+    seen.insert(drivers::number_picture(number * vm::kScale));
+  CHECK(seen.size() == 100);
+  Lit counts("SHOW face 7 FOR 500ms");
+  counts.run(530);
+  CHECK(counts.now() == 0);
+}
+
+TEST_CASE("lights: the robot's own pictures, one in place of a built-in one") {
+  constexpr std::uint32_t kRobot = picture(
+      "#...#"
+      "#####"
+      "#.#.#"
+      "#####"
+      ".#.#.");
+  const auto shown = [](const std::string& name, const std::string& own) {
+    const std::string rsl = test::stops_when_far("SHOW face " + name);
+    Rig rig;
+    const std::string robot = with_lights();
+    const auto image = test::compile(
+        rsl,
+        robot.substr(0, robot.size() - 1) + R"(, "pictures": {")" + own +
+            R"(": ["#...#", "#####", "#.#.#", "#####", ".#.#."], "full": ["#####", "#####", "#####", "#####", "#####"]}})");
+    REQUIRE(rig.activate(image).ok());
+    rig.feed(0, 6);
+    rig.run(10);
+    rig.feed(0, 20);
+    rig.run(20);
+    return rig.board.pictures.back();
+  };
+  CHECK(shown("robot", "robot") == kRobot);
+  CHECK(shown("happy", "happy") == kRobot);
+  CHECK(shown("happy", "robot") == kHappy);
+  CHECK(shown("full", "robot") == vm::kAllLights);
 }
 
 TEST_CASE("lights: a picture stays; with FOR it goes, STOP is dark at once") {

@@ -21,17 +21,27 @@ WHEN motion STRENGTH > 2.5g DO LOG "shaken" END
 WHEN motion STRENGTH < 0.3g DO LOG "falls" END
 )";
 
+// A write and a read of the registers of either half: the highest bit of the first byte says to go on to the next register.
+bool transfer(std::span<std::byte> registers, std::span<const std::byte> out,
+              std::span<std::byte> in) {
+  auto place = std::to_integer<std::size_t>(out[0]) & 0x7F;
+  const bool goes_on = (out[0] & std::byte{0x80}) != std::byte{0};
+  const auto next = [&]() -> std::byte& {
+    REQUIRE(place < registers.size());
+    return registers[goes_on ? place++ : place];
+  };
+  for (const std::byte byte : out.subspan(1))
+    next() = byte;
+  for (std::byte& byte : in)
+    byte = next();
+  return true;
+}
+
 // ST DocID027765 Rev 9: table 25, the registers from 0x20 on, and how a count is laid out.
 struct Accelerometer {
   explicit Accelerometer(test::NotingBoard& board) {
     board.on_transfer = [this](std::span<const std::byte> out, std::span<std::byte> in) {
-      auto place = std::to_integer<std::size_t>(out[0]) & 0x7F;
-      const bool goes_on = (out[0] & std::byte{0x80}) != std::byte{0};
-      for (const std::byte byte : out.subspan(1))
-        registers.at(goes_on ? place++ : place) = byte;
-      for (std::byte& byte : in)
-        byte = registers.at(goes_on ? place++ : place);
-      return true;
+      return transfer(registers, out, in);
     };
     lose_power();
   }
@@ -136,4 +146,92 @@ TEST_CASE("lsm303agr: a program knows how the robot is held, that it is shaken, 
   device.lie(0.05, 0, 0.05);
   rig.run(400);
   CHECK(logged(rig, "falls") == 1);
+}
+
+namespace {
+
+// ST DocID027765 Rev 9: table 26, the registers of the magnetometer from 0x60 on, after a reset.
+struct Magnetometer {
+  explicit Magnetometer(test::NotingBoard& board) {
+    board.on_bus = [this](std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
+                          std::span<std::byte> in) {
+      if (bus != 1 || address != 0x1E) return false;
+      return transfer(registers, out, in);
+    };
+    lose_power();
+  }
+  void lose_power() {
+    registers.fill(std::byte{0});
+    registers[0x4F] = std::byte{0x40};
+    registers[0x60] = std::byte{0x03};  // idle
+    registers[0x63] = std::byte{0xE0};
+  }
+  bool measures() const {
+    const auto mode = std::to_integer<unsigned>(registers[0x60]);
+    return (mode & 0b11) == 0 && (mode & 0x80) != 0 && registers[0x62] == std::byte{0x10} &&
+           registers[0x61] == std::byte{0} && registers[0x63] == std::byte{0xE0};
+  }
+  void put(unsigned axis, std::int32_t count) {
+    registers[0x68 + 2 * axis] = static_cast<std::byte>(count & 0xFF);
+    registers[0x69 + 2 * axis] = static_cast<std::byte>(count >> 8 & 0xFF);
+  }
+  std::array<std::byte, 0x80> registers{};
+};
+
+}  // namespace
+
+TEST_CASE("lsm303agr: the magnetometer is woken, once, and a count is a count of each axis") {
+  test::NotingBoard board;
+  Magnetometer device(board);
+  vm::Sensor sensor{};
+  sensor.bus = 1;
+  sensor.address = 0x1E;
+  std::int32_t raw = 0;
+  const auto read = [&](unsigned input) {
+    vm::Channel channel{};
+    channel.input = static_cast<std::uint8_t>(input);
+    return drivers::driver(vm::DriverId::lsm303agr).read(board, sensor, channel, raw);
+  };
+  CHECK_FALSE(read(0));
+  CHECK(device.measures());
+  CHECK(read(0));
+  CHECK(board.transfers.size() == 3);
+  std::mt19937 random(1303);
+  for (unsigned round = 0; round < 2000; ++round) {
+    double square = 0;
+    std::array<std::int32_t, 3> counts{};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      counts[axis] = round == 0 ? -32768 : static_cast<std::int32_t>(random() % 65536) - 32768;
+      device.put(axis, counts[axis]);
+      square += double(counts[axis]) * counts[axis];
+    }
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      REQUIRE(read(axis));
+      CHECK(raw == counts[axis]);
+    }
+    REQUIRE(read(3));
+    CHECK(raw == static_cast<std::int32_t>(std::sqrt(square)));
+  }
+  device.lose_power();
+  CHECK_FALSE(read(2));
+  CHECK(read(2));
+}
+
+TEST_CASE("lsm303agr: a program knows a magnet by its field, in uT") {
+  test::Rig rig;
+  rig.board.board_pins.i2c_buses = 2;
+  Magnetometer device(rig.board);
+  device.put(0, 200);
+  device.put(2, -267);
+  REQUIRE(rig.activate(test::compile("WHEN compass X > 29.9uT AND compass Z < -40uT AND compass "
+                                     "STRENGTH < 50.1µT DO LOG \"earth\" END\n"
+                                     "WHEN compass STRENGTH > 200uT DO LOG \"magnet\" END\n",
+                                     R"({"board": "microbit-v2", "sensors": [
+  {"name": "compass", "device": "compass"}]})"))
+              .ok());
+  rig.run(200);
+  CHECK(logged(rig, "earth") == 1);
+  device.put(1, 2000);
+  rig.run(400);
+  CHECK(logged(rig, "magnet") == 1);
 }

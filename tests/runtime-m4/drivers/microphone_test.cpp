@@ -82,7 +82,9 @@ TEST_CASE("microphone: its channels are what the ear hears in the same blocks") 
   drivers::Microphone microphone;
   for (const Block& block : blocks) {
     const Heard wanted = ear.hear(block);
-    const std::array values{wanted.loudness, wanted.highs, wanted.pitch, wanted.clarity};
+    const drivers::BandValues bands = ear.bands();
+    const std::array values{wanted.loudness, wanted.highs, wanted.pitch, wanted.clarity,
+                            bands[0],        bands[1],     bands[2],     bands[3]};
     for (std::uint8_t input = 0; input < values.size(); ++input) {
       vm::Channel channel{};
       channel.input = input;
@@ -93,7 +95,7 @@ TEST_CASE("microphone: its channels are what the ear hears in the same blocks") 
   }
   CHECK(ear.hear(blocks[0]).pitch != 0);
   vm::Channel none{};
-  none.input = 4;
+  none.input = 8;
   vm::Value value = 0;
   next = 0;
   CHECK_FALSE(microphone.sample(board, true, none, value));

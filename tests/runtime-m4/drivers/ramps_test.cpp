@@ -8,10 +8,11 @@
 
 #include "runtime-m4/drivers/trapezoid.hpp"
 #include "runtime-m4/drivers/way.hpp"
-#include "tests/runtime-m4/rig.hpp"
+#include "tests/runtime-m4/drivers/drive.hpp"
 
 using namespace robosync;
 using namespace robosync::drivers;
+using test::order;
 using trapezoid::Profile;
 using vm::Action;
 using vm::Param;
@@ -19,43 +20,20 @@ using vm::Value;
 
 namespace {
 
-using Params = std::initializer_list<std::pair<Param, Value>>;
-
-Order order(Action action, Params params = {}) {
-  Order result;
-  result.action = action;
-  for (const auto& [param, value] : params) {
-    result.given = static_cast<std::uint8_t>(result.given | 1U << static_cast<unsigned>(param));
-    result.params[static_cast<std::size_t>(param)] = value;
-  }
-  return result;
-}
-
-// An actuator whose time goes on by the driver's calls.
-struct Mover {
+// An actuator with a limit of acceleration.
+struct Mover : test::Drive {
   explicit Mover(vm::DriverId id, std::uint16_t acceleration, Value min = 0, Value max = 180'000,
                  Value speed_limit = vm::kValueMax)
-      : driver(drivers::driver(id)) {
-    wiring.driver = id;
-    wiring.pin = id == vm::DriverId::servo ? 7 : 90;
-    wiring.bus = static_cast<std::uint8_t>(vm::VirtualMotion::sweeps);
-    wiring.min = min;
-    wiring.max = max;
-    wiring.speed_limit = speed_limit;
-    state.acceleration = acceleration;
-    vm::Image image;
-    image.actuators = std::span(&wiring, 1);
-    outputs.own(image);
-  }
-  Device device() { return {outputs, wiring, state}; }
-  void begin(const Order& what) { wake = driver.start(device(), what, now); }
-  void move(Params params) { begin(order(Action::move, params)); }
-  void run(kernel::Time until = kernel::kForever) {
-    while (wake != kDone && wake <= until) {
-      REQUIRE(wake > now);
-      now = wake;
-      wake = driver.advance(device(), now);
+      : Drive(id, min, max, speed_limit) {
+    if (id == vm::DriverId::virtual_motion) {
+      wiring.pin = 90;  // its usual speed
+      wiring.bus = static_cast<std::uint8_t>(vm::VirtualMotion::sweeps);
     }
+    state.acceleration = acceleration;
+  }
+  void move(test::Params params) { begin(order(Action::move, params)); }
+  void run(kernel::Time until = kernel::kForever) {
+    Drive::run(until);
     if (until != kernel::kForever) now = until;
   }
   Value position() { return way::position(device(), now); }
@@ -66,16 +44,6 @@ struct Mover {
     run();
     return (now - before) / 1000;
   }
-  std::uint32_t pulse() const { return board.pwm_read(7); }
-
-  const Driver& driver;
-  kernel::Kernel kernel;
-  test::NotingBoard board;
-  guard::OutputGuard outputs{kernel, board};
-  vm::Actuator wiring{};
-  ActuatorState state;
-  kernel::Time now = 1'000'000;
-  kernel::Time wake = 0;
 };
 
 constexpr kernel::Time kStart = 1'000'000;

@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime-m4/guard/output_guard.hpp"
-#include "tests/runtime-m4/rig.hpp"
-#include "tests/runtime-m4/robot.hpp"
+#include "tests/runtime-m4/drivers/panel_robot.hpp"
 #include "tests/support/golden.hpp"
 
 using namespace robosync;
@@ -16,30 +15,17 @@ using namespace robosync;
 namespace ws2812_strip_test {
 namespace {
 
-constexpr unsigned kTold =
-    policy::kPanelGapMs + 10;  // milliseconds: the safety monitor tells the strip
 using Colors = std::vector<std::uint32_t>;
 constexpr std::uint32_t kRed = 0x19'00'00, kBlue = 0x00'00'19, kWhite = 0x19'19'19;
 
-struct Lit {
-  explicit Lit(const std::string& body, const std::string& more = "") {
-    const std::string robot =
-        R"({"board": "microbit-v2",
-            "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
-            "actuators": [{"name": "eyes", "pin": 1, "device": "ws2812_strip", "lights": 8)" +
-        more + R"(}, {"name": "arm", "type": "PWM", "pin": 0, "device": "servo"}]})";
-    REQUIRE(rig.activate(test::compile(test::stops_when_far(body), robot)).ok());
-    rig.feed(0, 6);
-    rig.run(at);
-    rig.feed(0, 20);
-    pass(kTold);
-  }
-  void pass(unsigned milliseconds) { rig.run(at += milliseconds); }
-  const Colors& colors() const { return rig.board.noting_panel.pictures; }
-  std::uint32_t now() const { return colors().back(); }
-
-  test::Rig rig;
-  unsigned at = 20;
+struct Lit : test::PanelRobot {
+  explicit Lit(const std::string& body, const std::string& more = "")
+      : PanelRobot(body,
+                   R"({"board": "microbit-v2",
+                "sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+                "actuators": [{"name": "eyes", "pin": 1, "device": "ws2812_strip", "lights": 8)" +
+                       more +
+                       R"(}, {"name": "arm", "type": "PWM", "pin": 0, "device": "servo"}]})") {}
 };
 
 }  // namespace
@@ -50,7 +36,7 @@ TEST_CASE("ws2812_strip: the board has what robot.json says of the strip") {
   const policy::Panel strip = robot.rig.board.noting_panel.begun.front();
   CHECK(strip.pin == 1);
   CHECK(strip.lights() == 8);
-  CHECK(robot.colors() == Colors{0, kWhite});
+  CHECK(robot.told() == Colors{0, kWhite});
   CHECK(Lit("LIGHT eyes", R"(, "brightness": 20)").now() == 0x33'33'33);
 }
 
@@ -85,7 +71,7 @@ TEST_CASE(
 TEST_CASE("ws2812_strip: OVER fades, and FOR ends") {
   Lit fades("LIGHT eyes TO 100% red OVER 1s");
   std::uint32_t before = fades.now();
-  for (unsigned passed = kTold; passed < 1000; passed += 20) {
+  for (unsigned passed = test::kPanelTold; passed < 1000; passed += 20) {
     fades.pass(20);
     CHECK(fades.now() >= before);
     CHECK((fades.now() & 0x00'FF'FF) == 0);
@@ -100,17 +86,17 @@ TEST_CASE("ws2812_strip: OVER fades, and FOR ends") {
   ends.pass(270);
   CHECK(ends.now() == kRed);
   ends.pass(40);
-  CHECK(ends.colors() == Colors{0, kRed, 0});
+  CHECK(ends.told() == Colors{0, kRed, 0});
 }
 
 TEST_CASE("ws2812_strip: BLINK flashes, and leaves it as it was") {
   Lit dark("BLINK eyes blue 2 TIMES OVER 800ms");
   dark.pass(2000);
-  CHECK(dark.colors() == Colors{0, kBlue, 0, kBlue, 0});
+  CHECK(dark.told() == Colors{0, kBlue, 0, kBlue, 0});
   Lit lit("LIGHT eyes red DIMLY\nWAIT 100ms\nBLINK eyes blue 2 TIMES\nTHEN\nWAIT 1s\nBLINK eyes");
   lit.pass(3000);
   constexpr std::uint32_t kDim = 0x05'00'00, kDimBlue = 0x00'00'05;
-  CHECK(lit.colors() == Colors{0, kDim, kDimBlue, 0, kDimBlue, 0, kDim, 0, kDim});
+  CHECK(lit.told() == Colors{0, kDim, kDimBlue, 0, kDimBlue, 0, kDim, 0, kDim});
 }
 
 TEST_CASE("ws2812_strip: interrupted it goes dark, or stays, as on_release says") {

@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime-m4/guard/output_guard.hpp"
-#include "tests/runtime-m4/rig.hpp"
-#include "tests/runtime-m4/robot.hpp"
+#include "tests/runtime-m4/drivers/panel_robot.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/vm/image_builder.hpp"
 
@@ -16,8 +15,6 @@ using namespace robosync;
 namespace ws2812_test {
 namespace {
 
-constexpr unsigned kLook = 10;  // milliseconds, the safety monitor's period
-constexpr unsigned kTime = policy::kPanelGapMs + kLook;
 using Pictures = std::vector<std::uint32_t>;
 
 std::string with_panel(const std::string& more = "") {
@@ -27,21 +24,9 @@ std::string with_panel(const std::string& more = "") {
          more + R"(}, {"name": "arm", "type": "PWM", "pin": 0, "device": "servo"}]})";
 }
 
-struct Shown {
-  explicit Shown(const std::string& body, const std::string& more = "") {
-    const std::string rsl = test::stops_when_far(body);
-    REQUIRE(rig.activate(test::compile(rsl, with_panel(more))).ok());
-    rig.feed(0, 6);
-    rig.run(at);
-    rig.feed(0, 20);
-    pass(kTime);
-  }
-  void pass(unsigned milliseconds) { rig.run(at += milliseconds); }
-  const Pictures& pictures() const { return rig.board.noting_panel.pictures; }
-  std::uint32_t now() const { return pictures().back(); }
-
-  test::Rig rig;
-  unsigned at = 20;
+struct Shown : test::PanelRobot {
+  explicit Shown(const std::string& body, const std::string& more = "")
+      : PanelRobot(body, with_panel(more)) {}
 };
 
 std::uint32_t happy() {
@@ -102,20 +87,20 @@ TEST_CASE("ws2812: the board has what robot.json says of the panel") {
 
 TEST_CASE("ws2812: it is dark until a picture comes, and told what changes alone") {
   Shown robot("SHOW face happy\nTHEN\nSHOW face happy\nTHEN\nWAIT 100ms\nSTOP face");
-  CHECK(robot.pictures() == Pictures{0, happy()});
-  robot.pass(100 + kTime);
-  CHECK(robot.pictures() == Pictures{0, happy(), 0});
+  CHECK(robot.told() == Pictures{0, happy()});
+  robot.pass(100 + test::kPanelTold);
+  CHECK(robot.told() == Pictures{0, happy(), 0});
   robot.pass(1000);
-  CHECK(robot.pictures() == Pictures{0, happy(), 0});
+  CHECK(robot.told() == Pictures{0, happy(), 0});
 }
 
 TEST_CASE("ws2812: with FOR a picture goes; BLINK closes and opens") {
   Shown goes("SHOW face happy FOR 300ms");
-  goes.pass(300 + kTime);
-  CHECK(goes.pictures() == Pictures{0, happy(), 0});
+  goes.pass(300 + test::kPanelTold);
+  CHECK(goes.told() == Pictures{0, happy(), 0});
   Shown blinks("SHOW face happy\nWAIT 100ms\nBLINK face 2 TIMES OVER 800ms");
   blinks.pass(2000);
-  CHECK(blinks.pictures() == Pictures{0, happy(), 0, happy(), 0, happy()});
+  CHECK(blinks.told() == Pictures{0, happy(), 0, happy(), 0, happy()});
 }
 
 TEST_CASE("ws2812: a picture has its time; of those that come meanwhile only the last one counts") {
@@ -150,7 +135,7 @@ TEST_CASE(
         robot.rig.runtime.stop();
       else
         robot.rig.feed(0, 95);
-      robot.pass(kTime);
+      robot.pass(test::kPanelTold);
       CHECK(robot.now() == (holds ? happy() : 0));
       robot.pass(500);
       CHECK(robot.now() == (holds ? happy() : 0));
@@ -159,7 +144,7 @@ TEST_CASE(
       robot.pass(100);
       CHECK(robot.now() == (holds ? happy() : 0));
       robot.rig.feed(0, 20);
-      robot.pass(kTime);
+      robot.pass(test::kPanelTold);
       CHECK(robot.now() == happy());
     }
 }
@@ -170,16 +155,16 @@ TEST_CASE("ws2812: the next program, and no program, begin in the dark") {
       robot.rig
           .activate(test::compile("WHEN near X > 10\nDO\nMOVE arm TO 10deg\nEND\n", with_panel()))
           .ok());
-  CHECK(robot.pictures() == Pictures{0, happy(), 0});
+  CHECK(robot.told() == Pictures{0, happy(), 0});
   Shown cleared("SHOW face happy");
   cleared.rig.runtime.clear();
-  CHECK(cleared.pictures() == Pictures{0, happy(), 0});
+  CHECK(cleared.told() == Pictures{0, happy(), 0});
   Shown again("SHOW face happy");
   REQUIRE(
       again.rig.activate(test::compile("WHEN near X > 90\nDO\nSHOW face sad\nEND\n", with_panel()))
           .ok());
-  again.pass(kTime);
-  CHECK(again.pictures() == Pictures{0, happy(), 0});
+  again.pass(test::kPanelTold);
+  CHECK(again.told() == Pictures{0, happy(), 0});
 }
 
 TEST_CASE(

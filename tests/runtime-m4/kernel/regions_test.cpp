@@ -59,6 +59,25 @@ TEST_CASE("the finest window is exact, whatever its size; there may be none") {
   CHECK(none.upper.size_and_eighths == 0);
 }
 
+TEST_CASE("a seat is the highest place that eighths of one region cover exactly") {
+  for (std::uint32_t end = 0x2001'8000; end < 0x2002'0000; end += 1024 * 3 + 128)
+    for (std::uint32_t bytes = 1024; bytes <= 24 * 1024; bytes += 1024) {
+      const Seat seat = highest_seat(end, bytes);
+      CHECK((seat.bytes >= bytes && seat.bytes < 2 * bytes));
+      CHECK((seat.begin + seat.bytes <= end && end - seat.begin <= 3 * bytes));
+      REQUIRE(fits_region(seat.begin, seat.bytes));
+      const Region made = cover(seat.begin, seat.begin + seat.bytes);
+      for (const std::uint32_t inside : {seat.begin, seat.begin + seat.bytes - 1})
+        CHECK(covers(made, inside));
+      for (const std::uint32_t outside : {seat.begin - 1, seat.begin + seat.bytes})
+        CHECK(!covers(made, outside));
+    }
+  CHECK(highest_seat(0x2002'0000, 10 * 1024).begin == 0x2002'0000 - 10 * 1024);
+  CHECK(!fits_region(0x2002'0000 - 10 * 1024, 10 * 1024 + 32));
+  CHECK(!fits_region(0x2002'0000 - 9 * 1024, 9 * 1024));
+  CHECK(!fits_region(0x2001'F000, 8 * 1024));
+}
+
 TEST_CASE("one region covers a piece of memory, with less than an eighth of itself around") {
   std::uint32_t state = 1;
   for (unsigned round = 0; round < 500; ++round) {

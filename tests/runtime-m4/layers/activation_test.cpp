@@ -123,8 +123,8 @@ TEST_CASE("feeds that cannot be are refused") {
   CHECK(rig.feed(1, 1, 100) == link::FeedError::none);
   rig.run(101);
   for (unsigned i = 0; i < policy::kFeeds; ++i) {
-    const link::FeedResult result =
-        rig.runtime.feed({.channel = 1, .at_us = (std::uint64_t{1} << 50) + i * 1000, .value = 0});
+    const link::FeedResult result = rig.runtime.enqueue(
+        {.channel = 1, .at_us = (std::uint64_t{1} << 50) + i * 1000, .value = 0});
     CHECK(result.error == link::FeedError::none);
     CHECK(result.free_places == policy::kFeeds - 1 - i);
   }

@@ -220,7 +220,7 @@ TEST_CASE("what one more of each takes") {
               .first_channel = 0,
               .channel_count = 1,
               .first_input = 0,
-              .reserved = 0};
+              .room = 0};
   drawn.actuators.resize(10);
   drawn.behaviors.resize(4);
   drawn.rules.resize(100);

@@ -1,5 +1,6 @@
 // What an image cannot do, however it was made: reach a pin that is not its own or not an output, blind the SAFETY
 // rules, command what its rules have not declared, or leave a motor running when it ends.
+#include <array>
 #include <functional>
 
 #include <catch2/catch.hpp>
@@ -142,6 +143,28 @@ TEST_CASE("a sensor with an echo has an output that may give short pulses, and a
   CHECK(refused(on(20, 0xFFFF), "button") == Refusal::no_input);
   Rig rig;
   CHECK(rig.activate(patched(on(20, 41), "button")).ok());
+}
+
+TEST_CASE("an encoder has an input whose edges are counted, and any input for the direction") {
+  static constexpr std::array<policy::PinRange, 1> kCounted{{{41, 42}}};
+  const auto on = [](std::uint16_t a, unsigned b) {
+    return [=](vm::Sensor& sensor, auto&, auto&, auto&) {
+      sensor.driver = vm::DriverId::encoder;
+      sensor.address = a;
+      sensor.bus = static_cast<std::uint8_t>(b);
+    };
+  };
+  CHECK(refused(on(3, 41), "button") == Refusal::shared_pin);  // the arm's
+  CHECK(refused(on(41, 3), "button") == Refusal::shared_pin);
+  CHECK(refused(on(20, 41), "button") == Refusal::no_input);
+  CHECK(refused(on(41, 20), "button") == Refusal::no_input);
+  for (const auto& [a, b] : {std::pair{41, 42}, {42, 40}, {42, 255}, {40, 41}}) {
+    Rig rig;
+    rig.board.board_pins.echoes = kCounted;
+    const vm::Verdict verdict = rig.activate(
+        patched(on(static_cast<std::uint16_t>(a), static_cast<unsigned>(b)), "button"));
+    CHECK(verdict.refusal == (a == 40 ? Refusal::no_input : Refusal::none));
+  }
 }
 
 TEST_CASE("a sensor of a voltage has an analog input of the board for itself") {

@@ -186,6 +186,40 @@ TEST_CASE("the board's limits hold whatever the robot's file says") {
   CHECK(rig.board.pwm_read(34) == 10'000);
 }
 
+TEST_CASE(
+    "a servo's own pulses go through all layers, also in its safe state, and the board's limits "
+    "hold") {
+  auto with = [](const std::string& pin, const std::string& pulses, bool widened) {
+    std::vector<std::byte> bytes = test::compile(
+        "SAFETY too_near\n  WHEN near X > 90\n  DO STOP arm\n  RESUME WHEN near X < 80\nEND\n"
+        "WHEN near X > 10\nDO MOVE arm TO 100deg\nEND\n",
+        R"({"sensors": [{"name": "near", "type": "VIRTUAL", "channels": {"X": {"range": [0, 100]}}}],
+            "actuators": [{"name": "arm", "type": "PWM", "pin": )" +
+            pin + R"(, "device": "servo", "range": ["0deg", "200deg"], "safe": "rest", "pulse": )" +
+            pulses + "}]}");
+    if (!widened) return bytes;
+    vm::Image image;
+    REQUIRE(vm::view_image(bytes, image));
+    for (const vm::Trait& trait : image.traits)
+      const_cast<vm::Trait&>(trait).value = 2500;
+    vm::test::repair_crc(bytes);
+    return bytes;
+  };
+  const auto pulses_of = [](const std::vector<std::byte>& bytes, std::uint16_t pin) {
+    Rig rig;
+    REQUIRE(rig.activate(bytes).ok());
+    rig.feed(0, 20);
+    rig.run(5000);
+    const std::uint32_t moved = rig.board.pwm_read(pin);
+    rig.feed(0, 95);
+    rig.run(10'000);
+    return std::pair(moved, rig.board.pwm_read(pin));
+  };
+  CHECK(pulses_of(with("3", R"(["600us", "2ms"])", false), 3) == std::pair(1300U, 600U));
+  CHECK(pulses_of(with("3", R"(["2.2ms", "1ms"])", false), 3) == std::pair(1600U, 2200U));
+  CHECK(pulses_of(with("32", R"(["1.8ms", "1.2ms"])", true), 32) == std::pair(2000U, 2000U));
+}
+
 // Uploads of images with damaged tables, readings, stops, resumes and program ends, in any order.
 TEST_CASE("no image, reading or stop drives what it must not") {
   test::Draw draw(17);

@@ -306,7 +306,7 @@ TEST_CASE("replies are kept while the host does not read; events are dropped and
   robot.host_reads = false;
   constexpr int kFeeds = 100;
   for (int i = 0; i < kFeeds; ++i) {
-    robot.runtime.feed({.channel = 0, .at_us = 0, .value = i % 2 == 0 ? 2000 : 5000});
+    robot.runtime.enqueue({.channel = 0, .at_us = 0, .value = i % 2 == 0 ? 2000 : 5000});
     robot.run(3);
   }
   CHECK(robot.ring.lost() > 0);
@@ -344,13 +344,13 @@ TEST_CASE("the link thread runs when there is something to do, and then only") {
   CHECK(runs_in(10'000) == 0);
   REQUIRE(upload(client, test::program(3).bytes()).running == 1);
   CHECK(runs_in(10'000) == 0);
-  robot.runtime.feed({.channel = 0, .at_us = 0, .value = 2000});  // while no host listens
+  robot.runtime.enqueue({.channel = 0, .at_us = 0, .value = 2000});  // while no host listens
   CHECK(runs_in(1000) == 0);
 
   client.set_trace(true);
   robot.run(10'000);  // until the reading's effects have ended
   CHECK(runs_in(10'000) == 0);
-  robot.runtime.feed({.channel = 0, .at_us = 0, .value = 5000});
+  robot.runtime.enqueue({.channel = 0, .at_us = 0, .value = 5000});
   const std::uint32_t runs = runs_in(1000);
   CHECK(runs > 0);
   CHECK(runs < 10);

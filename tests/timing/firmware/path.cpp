@@ -40,7 +40,7 @@ Runtime runtime(robosync_kernel, robosync_board, ring, arena_at(boards::kMemory)
 [[gnu::noinline]] void feed(std::uint32_t channel, vm::Value reading) {
   const link::Feed feed{.channel = channel, .at_us = 0, .value = reading};
   BENCH_MARK(feed_begin);
-  const link::FeedResult result = runtime.feed(feed);
+  const link::FeedResult result = runtime.enqueue(feed);
   BENCH_MARK(feed_end);
   if (result.error != link::FeedError::none) leave(false);
 }

@@ -66,7 +66,7 @@ void read_once(Reader& reader) {
                              .first_channel = 0,
                              .channel_count = 1,
                              .first_input = 0,
-                             .reserved = 0};
+                             .room = 0};
   vm::Channel channel{};
   channel.input = reader.input;
   channel.scale_num = channel.scale_den = 1;
