@@ -355,7 +355,7 @@ static void begin_in_corner(own_words_warp* self, uint32_t end) {
 static uint32_t warp_row(own_words_warp* self, const own_words_speech* a,
                          const own_words_speech* b) {
   const uint32_t i = self->at++;
-  uint32_t first, end;
+  uint32_t first = 0, end = 0;
   reach_of(i, a->count, b->count, &first, &end);
   uint32_t* now = self->costs[i % 3] + AHEAD + first;
   const uint32_t* before = self->costs[(i + 2) % 3] + AHEAD + first;

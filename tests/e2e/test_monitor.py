@@ -18,7 +18,7 @@ class Terminal:
     """tmux, a terminal emulator that reports the contents of its screen."""
 
     def __init__(self, folder, columns=100, rows=40):
-        self._tmux = ["tmux", "-L", f"robosync-{os.getpid()}", "-f", "/dev/null"]
+        self._tmux = ["tmux", "-S", str(folder / "tmux"), "-f", "/dev/null"]
         self.call("new-session", "-d", "-x", str(columns), "-y", str(rows), "env", "-i", "LANG=C.UTF-8", "TERM=screen",
                   f"PATH={os.environ['PATH']}", f"HOME={folder}", "sh")
 

@@ -80,41 +80,45 @@ class PlayerTest(RobotTest):
         return rsc.run(verb, *arguments, "--port", self.board.port)
 
     def begin(self):
-        """Uploads the program with a reading that SAFETY accepts."""
+        """Uploads the program with a reading that SAFETY accepts. Returns what the player is told until then: to be silent, as it
+        may be playing anything; twice if SAFETY trips before the reading."""
         self.say("upload", *self.written(PLAYS))
         self.say("feed", "near.X=0")
+        self.await_that(lambda sounds: sounds, "any")
+        time.sleep(0.2)
+        return self.sounds()
 
     def sounds(self):
         heard = self.heard.read_bytes()
         return [sound_of(heard[at:at + LENGTH]) for at in range(0, len(heard) - LENGTH + 1, LENGTH)]
 
-    def await_sounds(self, *wanted):
+    def await_that(self, fits, wanted):
         give_up = time.monotonic() + PATIENCE
-        while (seen := self.sounds()) != list(wanted):
+        while not fits(seen := self.sounds()):
             self.assertLess(time.monotonic(), give_up, f"{seen}, not {wanted}")
             time.sleep(0.01)
+        return seen
+
+    def await_sounds(self, *wanted):
+        return self.await_that(lambda sounds: sounds == list(wanted), wanted)
 
 
 class Sound(PlayerTest):
     def test_it_plays_what_the_program_says_and_is_silent_when_that_ends(self):
-        self.begin()
-        self.await_sounds(SILENCE)  # the player may be playing anything
+        before = self.begin()
         self.say("feed", "near.X=20")
-        self.await_sounds(SILENCE, 2, 3)  # the second replaces the first
+        before = self.await_sounds(*before, 2, 3)  # the second replaces the first
         self.say("feed", "near.X=40")
-        self.await_sounds(SILENCE, 2, 3, SILENCE)
+        before = self.await_sounds(*before, SILENCE)
         self.say("feed", "near.X=60")
-        self.await_sounds(SILENCE, 2, 3, SILENCE, 1)
+        before = self.await_sounds(*before, 1)
         self.say("feed", "near.X=95")
-        self.await_sounds(SILENCE, 2, 3, SILENCE, 1, SILENCE)
+        self.await_sounds(*before, SILENCE)
 
     def begin_to_play(self):
-        self.begin()
+        before = self.begin()
         self.say("feed", "near.X=60")
-        give_up = time.monotonic() + PATIENCE
-        while self.sounds()[-1:] != [1]:
-            self.assertLess(time.monotonic(), give_up, self.sounds())
-        return self.sounds()
+        return self.await_sounds(*before, 1)
 
     def test_a_stop_ends_it(self):
         before = self.begin_to_play()
@@ -140,10 +144,9 @@ class Cost(PlayerTest):
 
     def test_what_a_command_costs(self):
         said = int(re.search(r"^COST\(say,\s*(\d+),", COSTS, re.M)[1])
-        self.begin()
-        self.await_sounds(SILENCE)
+        before = self.begin()
         self.say("feed", "near.X=20")
-        self.await_sounds(SILENCE, 2, 3)
+        self.await_sounds(*before, 2, 3)
         marks = Marks(self.known, self.marks)
         measured = self.most(marks, TELL, SENT) + (LENGTH + 1) * self.most(marks, SENT, END)
         print(f"\n  {NAME}: {measured} instructions, said {said}")

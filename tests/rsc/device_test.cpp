@@ -509,19 +509,18 @@ TEST_CASE("a robot that was uploaded to while it was recorded is replayed to the
   device.write("robot.json", robot);
   const std::string program =
       device.write("robot.rsl", "EVERY 100ms DO MOVE left_arm QUICKLY TO 10deg END\n");
-  Outcome outcome;
-  std::thread monitor([&] {
-    outcome = device.run({"monitor", "--duration", "3s", "--upload", program, "--record",
-                          device.path("r.jsonl"), "--html", device.path("r.html")});
-  });
-  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  const std::string record = device.path("r.jsonl");
+  test::Running monitor({"monitor", "--upload", program, "--record", record, "--html",
+                         device.path("r.html"), "--port", device.port});
+  CHECK(monitor.has_written(record, R"("to":10)", 3));
   device.write("robot.rsl",
                "EVERY 1h DO MOVE left_amr TO 20deg END\n");  // wrong: nothing happens
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  CHECK(monitor.has_said("robot.rsl:1", 1));
   device.write("robot.rsl",
                "EVERY 150ms DO MOVE left_arm QUICKLY TO 30deg END\n"
                "WHEN proximity DISTANCE < 20mm DO LOG \"near\" END\n");
-  monitor.join();
+  CHECK(monitor.has_written(record, R"("to":30)", 3));
+  Outcome outcome = monitor.end(SIGINT);
   CAPTURE(outcome.err);
   CHECK(outcome.exit == 0);
   CHECK_THAT(outcome.err, Contains("robot.rsl:1"));

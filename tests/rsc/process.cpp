@@ -87,8 +87,17 @@ Running::~Running() {
 }
 
 bool Running::has_said(const std::string& text, std::size_t times) {
+  return await([this] { return err(); }, text, times);
+}
+
+bool Running::has_written(const std::string& file, const std::string& text, std::size_t times) {
+  return await([&] { return testing::read_file(file); }, text, times);
+}
+
+template <typename Read>
+bool Running::await(const Read& read, const std::string& text, std::size_t times) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (count_of(err(), text) < times) {
+  while (count_of(read(), text) < times) {
     const bool ended = process_ == 0 || waitpid(process_, nullptr, WNOHANG) != 0;
     if (ended) process_ = 0;
     if (ended || std::chrono::steady_clock::now() > give_up) return false;

@@ -29,6 +29,9 @@ public:
 
   // Waits until it has printed `text` on stderr `times` times; false when it has ended before that, or after 60 s.
   [[nodiscard]] bool has_said(const std::string& text, std::size_t times);
+  // The same for what it writes to a file.
+  [[nodiscard]] bool has_written(const std::string& file, const std::string& text,
+                                 std::size_t times);
   std::string out() const { return folder_.read("out"); }
   std::string err() const { return folder_.read("err"); }
   void send(int signal) const;
@@ -36,6 +39,9 @@ public:
   [[nodiscard]] Outcome end(int signal);
 
 private:
+  template <typename Read>
+  bool await(const Read& read, const std::string& text, std::size_t times);
+
   Folder folder_;
   int process_ = 0;  // 0: it has ended
 };

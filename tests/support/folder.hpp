@@ -4,10 +4,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+
+#include "tests/support/read_file.hpp"
 
 namespace robosync::test {
 
@@ -32,10 +33,7 @@ public:
     std::ofstream(path_ / name, std::ios::binary) << text;
     return path(name);
   }
-  std::string read(const std::string& name) const {
-    std::ifstream file(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string read(const std::string& name) const { return testing::read_file(path_ / name); }
   bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
   std::size_t files() const {
     const std::filesystem::directory_iterator all(path_);

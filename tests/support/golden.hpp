@@ -5,17 +5,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include <catch2/catch.hpp>
 
-namespace robosync::testing {
+#include "tests/support/read_file.hpp"
 
-inline std::string read_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+namespace robosync::testing {
 
 inline bool updating_golden() {
   const char* value = std::getenv("ROBOSYNC_UPDATE_GOLDEN");
