@@ -58,6 +58,7 @@ private:
   void begin(Request& request);
   void end(State how);
   void go_on(std::size_t from);
+  Request* find_waiting(std::size_t from, std::size_t end);
 
   [[no_unique_address]] Master master_{};
   bool open_ = false;
@@ -180,10 +181,17 @@ void AskedSpi<Master>::end(State how) {
 template <typename Master>
 void AskedSpi<Master>::go_on(std::size_t from) {
   if (running_ != nullptr) return;
-  for (std::size_t i = 0; i < used_; ++i) {
-    Request& request = requests_[(from + i) % used_];
-    if (request.state == State::waits) return begin(request);
-  }
+  Request* next = find_waiting(from, used_);
+  if (next == nullptr) next = find_waiting(0, from);
+  if (next != nullptr) begin(*next);
+}
+
+template <typename Master>
+typename AskedSpi<Master>::Request* AskedSpi<Master>::find_waiting(std::size_t from,
+                                                                   std::size_t end) {
+  for (Request& request : std::span(requests_).first(end).subspan(from))
+    if (request.state == State::waits) return &request;
+  return nullptr;
 }
 
 }  // namespace robosync::boards

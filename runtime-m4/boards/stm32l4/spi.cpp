@@ -11,8 +11,9 @@ namespace {
 
 using spi::kDma, spi::kDmaToMemory, wiring::kSpi;
 
-// The last bit has been received half a clock before its end, 0.8 us, and a poll takes at least four cycles of 80 MHz.
-constexpr unsigned kLooks = 40;
+// The last bit has been received half a clock before its end, 0.8 us, and a poll takes at least four cycles of 80 MHz: 16 polls, and
+// some more.
+constexpr unsigned kLooks = 20;
 
 void set_up(const DmaChannel& channel) {
   kDmaSelect.set_field(channel.number - 1, 4, spi::kDmaForSpi);
