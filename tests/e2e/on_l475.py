@@ -89,7 +89,8 @@ KNOB = {"board": "b-l475e-iot01a", "sensors": [{"name": "knob", "device": "mcp30
         "actuators": []}
 TURNED_UP = 'WHEN knob LEVEL > 50% DO LOG "up" END\n'
 COUNT_2, MEMORY_2, SPI_INTERRUPT, ENDED_2, READ_5 = ("DMA1", 0x20), ("DMA1", 0x28), 12, 1 << 5, 0x3A
-BOTH_WAYS, OUT, RELEASED, SPI_ENDED = 0x374, 0x14, 1, "robosync::boards::stm32l4::parts::on_interrupt("
+BOTH_WAYS, OUT, RELEASED = 0x374, 0x14, 1
+SPI_ENDED = "robosync::boards::AskedSpi<robosync::boards::stm32l4::SpiMaster>::on_interrupt("
 COST_OF_SPI = re.compile(r"^COST\((spi_\w+),\s*(\d+),", re.M)
 BUSY, READS_FLAGS, READS_STATE = 1 << 7, *(
     rf"^\s*([0-9a-f]+):[^\n]*\sldr(?:\.w)?\s+r(\d+), \[r\d+{place}\]\n[^\n]*\s{then}"

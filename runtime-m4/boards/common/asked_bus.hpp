@@ -413,21 +413,4 @@ void AskedBus<Master>::clock_out() {
   }
 }
 
-// For all buses of a board; the first one has number 0.
-template <typename Buses>
-bool is_any_busy(const Buses& buses) {
-  return std::ranges::any_of(buses, [](const auto& bus) { return bus.is_busy(); });
-}
-
-template <typename Buses>
-BusState state_of(const Buses& buses) {
-  BusState all;
-  for (std::size_t bus = 0; bus < buses.size(); ++bus) {
-    const BusState one = buses[bus].state();
-    all.clears = static_cast<std::uint16_t>(all.clears + one.clears);
-    all.held = static_cast<std::uint8_t>(all.held | one.held << bus);
-  }
-  return all;
-}
-
 }  // namespace robosync::boards
