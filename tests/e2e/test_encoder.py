@@ -160,7 +160,7 @@ class OfInterrupts(OfEdges):
 
     def test_no_check_of_safety_is_late_while_a_wire_swings(self):
         self.rest()
-        self.begin()
+        reader = self.begin()
         for swing in range(SWINGS):
             self.wires.set(A, swing % 2 == 0)
         self.assert_in_time(reader)
