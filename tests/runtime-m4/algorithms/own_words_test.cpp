@@ -12,6 +12,7 @@
 #include <catch2/catch.hpp>
 
 #include "runtime-m4/algorithms/modules.hpp"
+#include "runtime-m4/algorithms/own_words_distance.h"
 
 namespace {
 
