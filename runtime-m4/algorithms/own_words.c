@@ -282,11 +282,4 @@ static const robosync_parameter parameters[PARAMETERS] = {
     [SHOWN_FOR] = {"shown_for", ROBOSYNC_SECONDS},
 };
 
-static const robosync_description description = {
-    "own_words", &own_words_module, MICROPHONE_PERIOD_MS, inputs, outputs, parameters,
-};
-
-const robosync_description* own_words_describe(uint32_t abi);
-const robosync_description* own_words_describe(uint32_t abi) {
-  return abi == ROBOSYNC_ABI ? &description : NULL;
-}
+ROBOSYNC_DESCRIBE(own_words, MICROPHONE_PERIOD_MS, inputs, outputs, parameters)
