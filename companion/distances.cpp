@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "runtime-m4/algorithms/own_words_distance.h"
+
 namespace robosync::companion {
 namespace {
 

@@ -18,6 +18,7 @@
 
 #include "companion/distances.hpp"
 #include "companion/hearing.hpp"
+#include "runtime-m4/algorithms/own_words_ear.h"
 
 namespace robosync::companion {
 namespace {

@@ -251,11 +251,4 @@ static const robosync_parameter parameters[PARAMETERS] = {
     [SHOWN_FOR] = {"shown_for", ROBOSYNC_SECONDS},
 };
 
-static const robosync_description description = {
-    "imu_gestures", &imu_gestures_module, 20, inputs, outputs, parameters,
-};
-
-const robosync_description* imu_gestures_describe(uint32_t abi);
-const robosync_description* imu_gestures_describe(uint32_t abi) {
-  return abi == ROBOSYNC_ABI ? &description : NULL;
-}
+ROBOSYNC_DESCRIBE(imu_gestures, 20, inputs, outputs, parameters)

@@ -182,11 +182,4 @@ static const robosync_parameter parameters[PARAMETERS] = {
     [TUNING] = {"tuning", ROBOSYNC_HERTZ}, [SLIDE] = {"slide", ROBOSYNC_PERCENT},
 };
 
-static const robosync_description description = {
-    "pitch", &pitch_module, MICROPHONE_PERIOD_MS, microphone_inputs, outputs, parameters,
-};
-
-const robosync_description* pitch_describe(uint32_t abi);
-const robosync_description* pitch_describe(uint32_t abi) {
-  return abi == ROBOSYNC_ABI ? &description : NULL;
-}
+ROBOSYNC_DESCRIBE(pitch, MICROPHONE_PERIOD_MS, microphone_inputs, outputs, parameters)

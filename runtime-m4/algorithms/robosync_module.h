@@ -154,6 +154,15 @@ typedef struct robosync_description {
 // The module's description; NULL for any ROBOSYNC_ABI other than its own.
 typedef const robosync_description* (*robosync_describe)(uint32_t abi);
 
+// Defines that function, at the end of a module; the arguments are those of robosync_description.
+#define ROBOSYNC_DESCRIBE(name, period_ms, inputs, outputs, parameters)                 \
+  static const robosync_description description = {#name,  &name##_module, period_ms,   \
+                                                   inputs, outputs,        parameters}; \
+  const robosync_description* name##_describe(uint32_t abi);                            \
+  const robosync_description* name##_describe(uint32_t abi) {                           \
+    return abi == ROBOSYNC_ABI ? &description : 0;                                      \
+  }
+
 #ifdef __cplusplus
 }
 #endif

@@ -167,11 +167,4 @@ static const robosync_parameter parameters[PARAMETERS] = {
     [SHOWN_FOR] = {"shown_for", ROBOSYNC_SECONDS},
 };
 
-static const robosync_description description = {
-    "sound_events", &sound_events_module, MICROPHONE_PERIOD_MS, microphone_inputs, outputs,
-    parameters};
-
-const robosync_description* sound_events_describe(uint32_t abi);
-const robosync_description* sound_events_describe(uint32_t abi) {
-  return abi == ROBOSYNC_ABI ? &description : NULL;
-}
+ROBOSYNC_DESCRIBE(sound_events, MICROPHONE_PERIOD_MS, microphone_inputs, outputs, parameters)

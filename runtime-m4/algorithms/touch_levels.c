@@ -123,11 +123,4 @@ static const robosync_parameter parameters[PARAMETERS] = {
     [SHOWN_FOR] = {"shown_for", ROBOSYNC_SECONDS},
 };
 
-static const robosync_description description = {
-    "touch_levels", &touch_levels_module, 20, inputs, outputs, parameters,
-};
-
-const robosync_description* touch_levels_describe(uint32_t abi);
-const robosync_description* touch_levels_describe(uint32_t abi) {
-  return abi == ROBOSYNC_ABI ? &description : NULL;
-}
+ROBOSYNC_DESCRIBE(touch_levels, 20, inputs, outputs, parameters)

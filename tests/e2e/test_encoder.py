@@ -10,8 +10,9 @@ from pathlib import Path
 import pins
 import rsc
 from board import FIRMWARE, NAME
-from debugger import DebuggedTest
+from debugger import MOST_STEPS
 from support import PATIENCE
+from wired import WiredTest, counted, place_of, said
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
@@ -39,7 +40,6 @@ SWINGS = 5000
 INSTRUCTIONS_PER_MS, MOST_OF_TIME = 80_000_000 // 2000, 0.06  # as docs/timing.md assumes; between two checks of SAFETY
 FORWARD = ((A, True), (B, True), (A, False), (B, False))
 BACKWARD = ((B, True), (A, True), (B, False), (A, False))
-MOST_COUNTED = 4000
 
 
 def most_edges():
@@ -49,34 +49,14 @@ def most_edges():
     return int(re.search(r"kEdgesPerMs = (\d+);", drivers)[1]) * (SAMPLE_MS + late)
 
 
-def place_of(part):
-    return next(at for name, at in symbols(FIRMWARE).items() if part in name)
-
-
-class Encoder(DebuggedTest):
-    def setUp(self):
-        super().setUp()
-        (self.folder / "wheel.rsl").write_text(PROGRAM)
-        (self.folder / "wheel.json").write_text(json.dumps(ROBOT))
-        self.wires = pins.Pins(self.folder)
-        self.addCleanup(self.wires.close)
-
-    def qemu_arguments(self):
-        return [*pins.arguments(self.folder), *super().qemu_arguments()]
-
-    def begin(self):
-        self.upload(self.folder / "wheel.rsl", "--config", self.folder / "wheel.json")
-        return self.listen()
+class Encoder(WiredTest):
+    PROGRAM, ROBOT = PROGRAM, ROBOT
 
     def await_distance(self, reader, edges):
         def came(lines):
             told = [event["value"] for event in map(json.loads, lines) if event.get("channel") == "DISTANCE" and event["event"] == "input"]
             return told and told[-1] is not None and abs(told[-1] - edges * MM_OF_EDGE) < 0.01
         self.assertTrue(reader.wait_for(came, PATIENCE), (edges, reader.lines[-8:]))
-
-    def said(self, name):
-        listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
-        return int(re.search(rf"^COST\({name},\s*([\d']+)", listed, re.M)[1].replace("'", ""))
 
 
 @unittest.skipUnless(REFERENCE, "its edges are words of the reference board's memory")
@@ -154,7 +134,7 @@ class OfInterrupts(OfEdges):
         self.assertGreater(max(handled), most_edges() // 2)
         self.assertLessEqual(max(handled), most_edges() + SLACK)
         self.assertLessEqual(sum(handled), (KICKS * KICK_MS / SAMPLE_MS + 1) * (most_edges() + SLACK))
-        self.assertLessEqual(max(handled) * self.said("edge"), KICK_MS * INSTRUCTIONS_PER_MS * MOST_OF_TIME)
+        self.assertLessEqual(max(handled) * said("edge"), KICK_MS * INSTRUCTIONS_PER_MS * MOST_OF_TIME)
         self.await_event(reader, event="silent", sensor="wheel")
         self.await_event(reader, event="alert", text="blind")
 
@@ -168,33 +148,21 @@ class OfInterrupts(OfEdges):
     def test_what_an_edge_and_a_sample_cost(self):
         self.rest()
         self.begin()
-        said = {name: self.said(name) for name in ("edge", "encoder")}
+        of_edge, of_sample = said("edge"), said("encoder")
         with self.debugger() as debugger:
             edges = []
             for pin, high in 3 * FORWARD:
                 debugger.run_to(place_of(KICK), lambda: None)
                 self.wires.set(pin, high)
                 if pin == A:
-                    edges.append(self.counted(debugger, symbols(FIRMWARE)[self.HANDLER]))
+                    edges.append(counted(debugger, symbols(FIRMWARE)[self.HANDLER]))
                 else:
                     debugger.step()
-            reads = [self.counted(debugger, place_of("drivers::Encoders::sample(")) for _ in range(4)]
-        print(f"\n  edges {edges}, samples {reads}; said {said}")
-        self.assertGreaterEqual(said["edge"], max(edges))
-        self.assertLessEqual(said["edge"], 1.3 * max(edges))
-        self.assertGreaterEqual(said["encoder"], max(reads))
-
-    def counted(self, debugger, place):
-        """Instructions from there until it returns, without those of interrupts."""
-        debugger.run_to(place, lambda: None)
-        back = debugger.register(14)
-        mode, steps = debugger.mode(), 0
-        while steps < MOST_COUNTED:
-            debugger.step()
-            steps += 1
-            if debugger.register(15) == back & ~1 or (mode != 0 and debugger.mode() != mode):
-                return steps
-        return self.fail("it does not return")
+            reads = [counted(debugger, place_of("drivers::Encoders::sample(")) for _ in range(4)]
+        print(f"\n  edges {edges}, said {of_edge}; samples {reads}, said {of_sample}")
+        self.assertGreaterEqual(of_edge, max(edges))
+        self.assertLessEqual(of_edge, 1.3 * max(edges))
+        self.assertGreaterEqual(of_sample, max(reads))
 
 
 @unittest.skipUnless(MICROBIT, "on the micro:bit the test plays the edges")
@@ -218,7 +186,7 @@ class OfPlayedEdges(OfEdges):
         self.wires.interrupt(self.CORE, self.GPIOTE)
         debugger.run_to(handler, lambda: None)
         mode, steps = debugger.mode(), 0
-        while debugger.mode() == mode and steps < MOST_COUNTED:
+        while debugger.mode() == mode and steps < MOST_STEPS:
             core = debugger.core()
             load = loads.get(core[15])
             debugger.step()
@@ -243,10 +211,10 @@ class OfPlayedEdges(OfEdges):
                     steps.append(self.interrupt(debugger, handler, loads))
         self.await_distance(reader, -6)
         self.await_event(reader, event="log", text="back")
-        said = self.said("edge")
-        print(f"\n  edges {steps}, said {said}")
-        self.assertGreaterEqual(said, max(steps))
-        self.assertLessEqual(said, 1.3 * max(steps))
+        of_edge = said("edge")
+        print(f"\n  edges {steps}, said {of_edge}")
+        self.assertGreaterEqual(of_edge, max(steps))
+        self.assertLessEqual(of_edge, 1.3 * max(steps))
 
 
 if __name__ == "__main__":

@@ -8,15 +8,14 @@ import unittest
 from pathlib import Path
 
 import pins
-import rsc
 from board import FIRMWARE, NAME
-from debugger import DebuggedTest
+from debugger import LINK_REGISTER
 from support import PATIENCE
+from wired import WiredTest, counted, place_of, said
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from counting import symbols  # noqa: E402
 
-LINK_REGISTER = 14
 MM_PER_CM = 10
 US_PER_CM = 1 / 0.01715
 REFERENCE = NAME not in pins.LINES
@@ -39,23 +38,10 @@ END
 """
 KICK = "watchdog_kick()"  # every 10 ms, by SAFETY
 KICK_US = 10_000
-MOST_COUNTED = 4000
 
 
-class Sonar(DebuggedTest):
-    def setUp(self):
-        super().setUp()
-        (self.folder / "sonar.rsl").write_text(PROGRAM)
-        (self.folder / "sonar.json").write_text(json.dumps(ROBOT))
-        self.wires = pins.Pins(self.folder)
-        self.addCleanup(self.wires.close)
-
-    def qemu_arguments(self):
-        return [*pins.arguments(self.folder), *super().qemu_arguments()]
-
-    def begin(self):
-        self.upload(self.folder / "sonar.rsl", "--config", self.folder / "sonar.json")
-        return self.listen()
+class Sonar(WiredTest):
+    PROGRAM, ROBOT = PROGRAM, ROBOT
 
     def distances(self, lines):
         told = (json.loads(line) for line in lines)
@@ -85,10 +71,6 @@ class OfMemory(Sonar):
         self.await_event(reader, event="alert", text="stands still")
 
 
-def on_edge(prefix):
-    return next(at for name, at in symbols(FIRMWARE).items() if prefix in name)
-
-
 @unittest.skipUnless(NAME in ("b-l475e-iot01a", "nucleo-l476rg"), "QEMU has no edges of pins elsewhere")
 class OfEdges(Sonar):
     """The core is stopped while the test changes a level; between two kicks of the watchdog it runs for 10 ms."""
@@ -99,10 +81,10 @@ class OfEdges(Sonar):
 
     def echo(self, debugger, level_changes):
         """From the next pulse on, sets the next level at each kick of the watchdog."""
-        debugger.run_to(on_edge("Board::ping("), lambda: None)
+        debugger.run_to(place_of("Board::ping("), lambda: None)
         debugger.run_to(debugger.register(LINK_REGISTER) & ~1, lambda: None)
         for high in level_changes:
-            debugger.run_to(on_edge(KICK), lambda: None)
+            debugger.run_to(place_of(KICK), lambda: None)
             self.wires.set(ECHO, high)
             debugger.step()
 
@@ -116,7 +98,7 @@ class OfEdges(Sonar):
         self.await_event(reader, event="silent")  # afterwards there are no echoes
 
     def test_an_echo_that_stays_and_edges_that_nobody_asked_for_are_no_reading(self):
-        self.upload(self.folder / "sonar.rsl", "--config", self.folder / "sonar.json")
+        self.upload(self.program, "--config", self.config)
         with self.debugger() as debugger:
             self.echo(debugger, (True,))
         self.wires.set(ECHO, False)
@@ -133,33 +115,18 @@ class OfEdges(Sonar):
     def test_what_a_measurement_costs(self):
         """From the guard on, the pulse with both edges, and the sample: at most the values in costs.def, and 1,500 in all."""
         self.begin()
-        listed = (rsc.ROOT / f"runtime-m4/boards/{NAME}/costs.def").read_text()
-        said = {name: int(line.split(",")[1].replace("'", "")) for name in ("ping", "echo")
-                for line in listed.splitlines() if line.startswith(f"COST({name},")}
         with self.debugger() as debugger:
-            asked = self.counted(debugger, on_edge("Board::ping("))
+            asked = counted(debugger, place_of("Board::ping("))
             edges = []
             for high in (True, False):
-                debugger.run_to(on_edge(KICK), lambda: None)
+                debugger.run_to(place_of(KICK), lambda: None)
                 self.wires.set(ECHO, high)
-                edges.append(self.counted(debugger, symbols(FIRMWARE)["Echo_Handler"]))
-            read = self.counted(debugger, on_edge("drivers::hc_sr04::read("))
-        print(f"\n  asked {asked}, edges {edges}, sampled {read}; said {said}")
-        self.assertGreaterEqual(said["ping"], asked + sum(edges))
-        self.assertGreaterEqual(said["echo"], read)
+                edges.append(counted(debugger, symbols(FIRMWARE)["Echo_Handler"]))
+            read = counted(debugger, place_of("drivers::hc_sr04::read("))
+        print(f"\n  asked {asked}, edges {edges}, sampled {read}")
+        self.assertGreaterEqual(said("ping"), asked + sum(edges))
+        self.assertGreaterEqual(said("echo"), read)
         self.assertLessEqual(asked + sum(edges) + read, 1500)
-
-    def counted(self, debugger, place):
-        """Instructions from there until it returns, without those of interrupts."""
-        debugger.run_to(place, lambda: None)
-        back = debugger.register(LINK_REGISTER)
-        mode, steps = debugger.mode(), 0
-        while steps < MOST_COUNTED:
-            debugger.step()
-            steps += 1
-            if debugger.register(15) == back & ~1 or (mode != 0 and debugger.mode() != mode):
-                return steps
-        self.fail("it does not return")
 
 
 if __name__ == "__main__":

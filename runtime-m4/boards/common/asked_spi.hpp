@@ -2,12 +2,13 @@
 // They are asked ahead, and run one after the other in the background; an interrupt reports the end of each. A part cannot hold
 // the lines, so a transfer ends in time unless the hardware fails: one that is not over when its answer is due is given up.
 //
-// Master implements the hardware's part:
+// Master implements the hardware's part, in static functions:
 //   open(), close()          it has its pins in between
 //   begin(out, in)           sends `out`, and receives as many bytes; neither moves during the transfer
 //   on_interrupt()           returns the transfer's state
 //   let_go()                 aborts any transfer, and is ready for the next one
-//   select(pin, on)          the select pin of a part: low (on) or high
+//   begin_select(pin), end_select(pin)   in between it is the select pin of a part: select(pin, on) sets it low (on) or high. The
+//                                        pin at an enable input is always high otherwise
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/boards/common/asked_bus.hpp"
+#include "runtime-m4/boards/common/transfer.hpp"
 #include "runtime-m4/port/cortex-m4/register.hpp"
 #include "vm/drivers.hpp"
 
@@ -25,8 +26,9 @@ namespace robosync::boards {
 template <typename Master>
 class AskedSpi {
 public:
-  void open();
-  // Forgets all requests. The select pins are high afterwards.
+  // For a part with this select pin, of 0 to 63.
+  void open(std::uint16_t select);
+  // Forgets all requests, and gives the pins back.
   void close();
   // As in boards::Board; `ahead` is the last argument of ask_buses(). False while the bus is closed.  [one thread at a time]
   bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
@@ -58,8 +60,9 @@ private:
   void begin(Request& request);
   void end(State how);
   void go_on(std::size_t from);
+  Request* find_waiting(std::size_t from, std::size_t end);
 
-  [[no_unique_address]] Master master_{};
+  std::uint64_t selects_ = 0;  // bit p: pin p
   bool open_ = false;
   std::uint8_t used_ = 0;  // requests, from the first on
   Request* running_ = nullptr;
@@ -69,9 +72,11 @@ private:
 };
 
 template <typename Master>
-void AskedSpi<Master>::open() {
+void AskedSpi<Master>::open(std::uint16_t select) {
+  Master::begin_select(select);
+  selects_ |= std::uint64_t{1} << select;
   if (open_) return;
-  master_.open();
+  Master::open();
   open_ = true;
 }
 
@@ -80,13 +85,15 @@ void AskedSpi<Master>::close() {
   const port::Alone alone;
   if (!open_) return;
   if (running_ != nullptr) {
-    master_.let_go();
+    Master::let_go();
     Master::select(running_->select, false);
   }
   running_ = nullptr;
   used_ = 0;
   open_ = false;
-  master_.close();
+  Master::close();
+  for (std::uint16_t pin = 0; selects_ != 0; ++pin, selects_ >>= 1)
+    if ((selects_ & 1) != 0) Master::end_select(pin);
 }
 
 template <typename Master>
@@ -136,7 +143,7 @@ template <typename Master>
 bool AskedSpi<Master>::collect(Request& request, std::span<std::byte> in) {
   if (request.under_way()) {
     request.state = State::failed;
-    master_.let_go();
+    Master::let_go();
     end(State::failed);
   }
   if (request.state != State::done) return false;
@@ -153,13 +160,13 @@ template <typename Master>
   Master::select(request.select, true);
   asm volatile("" ::: "memory");  // the master reads it from memory
   const std::size_t bytes = 1U + request.read;
-  master_.begin(std::span(out_).first(bytes), std::span(in_).first(bytes));
+  Master::begin(std::span(out_).first(bytes), std::span(in_).first(bytes));
 }
 
 template <typename Master>
 void AskedSpi<Master>::on_interrupt() {
   const port::Alone alone;
-  const Transfer state = master_.on_interrupt();
+  const Transfer state = Master::on_interrupt();
   if (state == Transfer::goes_on || running_ == nullptr) return;
   asm volatile("" ::: "memory");  // the master has written to memory
   std::copy_n(in_.begin() + 1, kMostRead, running_->in.begin());
@@ -180,10 +187,17 @@ void AskedSpi<Master>::end(State how) {
 template <typename Master>
 void AskedSpi<Master>::go_on(std::size_t from) {
   if (running_ != nullptr) return;
-  for (std::size_t i = 0; i < used_; ++i) {
-    Request& request = requests_[(from + i) % used_];
-    if (request.state == State::waits) return begin(request);
-  }
+  Request* next = find_waiting(from, used_);
+  if (next == nullptr) next = find_waiting(0, from);
+  if (next != nullptr) begin(*next);
+}
+
+template <typename Master>
+typename AskedSpi<Master>::Request* AskedSpi<Master>::find_waiting(std::size_t from,
+                                                                   std::size_t end) {
+  for (Request& request : std::span(requests_).first(end).subspan(from))
+    if (request.state == State::waits) return &request;
+  return nullptr;
 }
 
 }  // namespace robosync::boards

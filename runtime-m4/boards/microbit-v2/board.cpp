@@ -12,7 +12,6 @@
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 #include "runtime-m4/boards/microbit-v2/speaker.hpp"
-#include "runtime-m4/boards/microbit-v2/spi.hpp"
 #include "runtime-m4/boards/microbit-v2/thermometer.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/hooks.hpp"
@@ -36,8 +35,7 @@ Board::Board() : chip_reset_(take_reset_cause()) {
   port::core::enable_interrupt(kRowInterrupt);
   for (const Pwm& module : {kPwm0, kPwm1})
     port::core::enable_interrupt(module.interrupt);
-  for (I2c& bus : i2c_)
-    bus.start();
+  start_i2c();
   for (const Twim& master : {kTwim0, kTwim1})
     port::core::enable_interrupt(master.interrupt);
   port::core::enable_interrupt(kPartSpi.interrupt);
@@ -57,19 +55,6 @@ link::ResetReason Board::reset_reason() const {
       break;
   }
   return last_reset();
-}
-
-bool Board::spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
-                         std::span<std::byte> in) {
-  return bus == 0 && spi::transfer(asks_ahead_, select, out, in);
-}
-
-void Board::spi_open(std::uint8_t /*bus*/, std::uint16_t select) {
-  spi::open(select);
-}
-
-void Board::spi_close() {
-  spi::close();
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -152,7 +137,7 @@ void Board::say(std::uint8_t line, const policy::PlayerCommand& command) {
 robosync::boards::Board& robosync_board = robosync::boards::microbit::board;
 
 void robosync::boards::switch_outputs_off() {
-  microbit::spi::switch_off();
+  microbit::switch_spi_off();
   microbit::pins::switch_off();
   microbit::lights::show(0);
   microbit::speaker::sound(0);
@@ -189,7 +174,7 @@ void Row_Handler() {
 }
 
 void Spi_Handler() {
-  robosync::boards::microbit::spi::on_interrupt();
+  robosync::boards::microbit::board.spi().on_interrupt();
 }
 
 void Echo_Handler() {

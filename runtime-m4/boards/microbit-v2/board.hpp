@@ -8,12 +8,14 @@
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/asking_board.hpp"
 #include "runtime-m4/boards/common/flash_store.hpp"
 #include "runtime-m4/boards/common/serial_line.hpp"
 #include "runtime-m4/boards/microbit-v2/flash.hpp"
 #include "runtime-m4/boards/microbit-v2/i2c.hpp"
 #include "runtime-m4/boards/microbit-v2/panel.hpp"
 #include "runtime-m4/boards/microbit-v2/resets.hpp"
+#include "runtime-m4/boards/microbit-v2/spi.hpp"
 #include "runtime-m4/boards/microbit-v2/uart.hpp"
 #include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
@@ -43,7 +45,22 @@ struct OwnFlash : Flash {  // for FlashStore
   }
 };
 
-class Board final : public boards::Board {
+struct Buses {  // for AskingBoard
+  using Spi = PartBus;
+  // 0: the edge connector's, pins 19 and 20; 1: the bus of the parts on the board.
+  static constexpr std::array<I2c, 2> i2c() {
+    return {I2c({kTwim1, {.clock = {0, 26}, .data = {1, 0}}}),
+            I2c({kTwim0, {.clock = {0, 8}, .data = {0, 16}}})};
+  }
+};
+
+}  // namespace robosync::boards::microbit
+
+extern template class robosync::boards::AskingBoard<robosync::boards::microbit::Buses>;
+
+namespace robosync::boards::microbit {
+
+class Board final : public AskingBoard<Buses> {
 public:
   static constexpr std::uint32_t kWatchdogMs = 100;
 
@@ -53,19 +70,6 @@ public:
   const char* name() const override { return "microbit-v2"; }
   link::ResetReason reset_reason() const override;
   const policy::BoardPins& pins() const override { return boards::kPins; }
-  bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
-                    std::span<std::byte> in) override;
-  bool i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
-                    std::span<std::byte> in) override;
-  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
-                    std::span<std::byte> in) override;
-  void spi_open(std::uint8_t bus, std::uint16_t select) override;
-  void spi_close() override;
-  BusState buses() const override;
-  bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
-  bool buses_ask_ahead() const override { return true; }
-  void ask_buses(bool ahead) override { asks_ahead_ = ahead; }
-  bool buses_busy() const override;
   bool input(std::uint16_t pin) const override;
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
@@ -94,17 +98,12 @@ public:
   std::uint32_t watchdog_ms() const override { return kWatchdogMs; }
 
   Line& line() { return line_; }
-  I2c& i2c(unsigned bus) { return i2c_[bus]; }
 
 private:
   ChipReset chip_reset_;
   Line line_;
   FlashStore<OwnFlash> store_{flash::kBytes - ROBOSYNC_STORE_BYTES,
                               ROBOSYNC_STORE_BYTES};  // the end of the flash
-  bool asks_ahead_ = false;
-  // 0: the edge connector's, pins 19 and 20; 1: the bus of the parts on the board.
-  std::array<I2c, 2> i2c_{I2c({kTwim1, {.clock = {0, 26}, .data = {1, 0}}}),
-                          I2c({kTwim0, {.clock = {0, 8}, .data = {0, 16}}})};
 };
 
 extern Board board;

@@ -1,18 +1,19 @@
 // See spi.hpp. Nordic's nRF52833 Product Specification, 6.23 (SPIM).
 #include "runtime-m4/boards/microbit-v2/spi.hpp"
 
-#include "runtime-m4/boards/common/asked_spi.hpp"
 #include "runtime-m4/boards/microbit-v2/pins.hpp"
 #include "runtime-m4/boards/microbit-v2/player.hpp"
 #include "runtime-m4/boards/microbit-v2/registers.hpp"
 
-namespace robosync::boards::microbit::spi {
+namespace robosync::boards::microbit {
 namespace {
 
 // A byte takes 8 us and a poll at least 0.1 us: the polls wait for the byte that is on its way, and no longer.
 constexpr unsigned kLooksAtStop = 100;
 
-struct Master {  // for AskedSpi
+}  // namespace
+
+struct SpiMaster {  // for AskedSpi
   static void open() {
     player::close();
     kPartClock.set_low().write(kPartClock.mask());
@@ -63,42 +64,16 @@ struct Master {  // for AskedSpi
     kPartSpi.enable().write(Spim::kOn);
   }
 
+  static void begin_select(std::uint16_t pin) { pins::select(pin, false); }
   static void select(std::uint16_t pin, bool on) { pins::select(pin, on); }
+  // A pin for pulses is low again; the one at the enable input stays high.
+  static void end_select(std::uint16_t pin) { pins::end_select(pin); }
 };
 
-constinit AskedSpi<Master> bus;
-std::uint32_t outputs_that_select = 0;  // bit p: pin p
-
-}  // namespace
-
-void open(std::uint16_t select) {
-  pins::select(select, false);
-  outputs_that_select |= 1U << select;
-  bus.open();
-}
-
-// A pin for pulses is low again; the one at the enable input stays high.
-void close() {
-  bus.close();
-  for (std::uint16_t pin = 0; outputs_that_select != 0; ++pin, outputs_that_select >>= 1)
-    if ((outputs_that_select & 1) != 0) pins::end_select(pin);
-}
-
-bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
-              std::span<std::byte> in) {
-  return bus.transfer(ahead, select, out, in);
-}
-
-bool is_busy() {
-  return bus.is_busy();
-}
-
-void on_interrupt() {
-  bus.on_interrupt();
-}
-
-void switch_off() {
+void switch_spi_off() {
   kPartSpi.enable().write(0);
 }
 
-}  // namespace robosync::boards::microbit::spi
+}  // namespace robosync::boards::microbit
+
+template class robosync::boards::AskedSpi<robosync::boards::microbit::SpiMaster>;

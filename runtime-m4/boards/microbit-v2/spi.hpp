@@ -2,20 +2,16 @@
 // While it is open, the sound player's line, which is pin 15, is closed.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
+#include "runtime-m4/boards/common/asked_spi.hpp"
 
-namespace robosync::boards::microbit::spi {
+namespace robosync::boards::microbit {
 
-// As in boards::Board (spi_open(), spi_close(), spi_transfer() after ask_buses()).
-void open(std::uint16_t select);
-void close();
-[[nodiscard]] bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
-                            std::span<std::byte> in);
-[[nodiscard]] bool is_busy();
-void on_interrupt();
+struct SpiMaster;
+using PartBus = AskedSpi<SpiMaster>;
+
 // The bus no longer drives its pins, until it is opened again after start-up. [any processor state]
-void switch_off();
+void switch_spi_off();
 
-}  // namespace robosync::boards::microbit::spi
+}  // namespace robosync::boards::microbit
+
+extern template class robosync::boards::AskedSpi<robosync::boards::microbit::SpiMaster>;

@@ -7,7 +7,6 @@
 #include "runtime-m4/boards/stm32l4/echoes.hpp"
 #include "runtime-m4/boards/stm32l4/inputs.hpp"
 #include "runtime-m4/boards/stm32l4/pins.hpp"
-#include "runtime-m4/boards/stm32l4/spi.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "runtime-m4/port/cortex-m4/clock.hpp"
 #include "runtime-m4/port/cortex-m4/core.hpp"
@@ -32,8 +31,7 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
   inputs::start();
   echoes::start();
   analog::start();
-  for (I2c& bus : i2c_)
-    bus.start();
+  start_i2c();
   for (const Bus& bus : wiring::kBuses)
     for (const unsigned interrupt : {bus.master.event_interrupt, bus.master.event_interrupt + 1})
       port::core::enable_interrupt(interrupt);
@@ -45,19 +43,6 @@ Board::Board() : watchdog_reset_(rcc::kStatus.has(rcc::kWatchdogReset)) {
 // A watchdog reset comes without warning, so it could not be recorded in memory.
 link::ResetReason Board::reset_reason() const {
   return watchdog_reset_ ? ResetReason::watchdog : last_reset();
-}
-
-bool Board::spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
-                         std::span<std::byte> in) {
-  return bus == 0 && parts::transfer(asks_ahead_, select, out, in);
-}
-
-void Board::spi_open(std::uint8_t /*bus*/, std::uint16_t select) {
-  parts::open(select);
-}
-
-void Board::spi_close() {
-  parts::close();
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -124,7 +109,7 @@ void Board::watchdog_kick() {
 robosync::boards::Board& robosync_board = robosync::boards::stm32l4::board;
 
 void robosync::boards::switch_outputs_off() {
-  stm32l4::parts::switch_off();
+  stm32l4::switch_spi_off();
   stm32l4::pins::switch_off();
 }
 
@@ -162,7 +147,7 @@ void Echo_Handler() {
 }
 
 void Spi_Handler() {
-  robosync::boards::stm32l4::parts::on_interrupt();
+  robosync::boards::stm32l4::board.spi().on_interrupt();
 }
 
 }  // extern "C"

@@ -9,16 +9,33 @@
 #include <utility>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/asking_board.hpp"
 #include "runtime-m4/boards/common/flash_store.hpp"
 #include "runtime-m4/boards/pins.hpp"
 #include "runtime-m4/boards/stm32l4/flash.hpp"
 #include "runtime-m4/boards/stm32l4/i2c.hpp"
 #include "runtime-m4/boards/stm32l4/panel.hpp"
+#include "runtime-m4/boards/stm32l4/spi.hpp"
 #include "runtime-m4/boards/stm32l4/usart.hpp"
 
 namespace robosync::boards::stm32l4 {
 
-class Board final : public boards::Board {
+struct Buses {  // for AskingBoard
+  using Spi = PartBus;
+  template <std::size_t... kBus>
+  static constexpr std::array<I2c, sizeof...(kBus)> these(std::index_sequence<kBus...> /*all*/) {
+    return {I2c(i2c_master(kBus))...};
+  }
+  static constexpr auto i2c() { return these(std::make_index_sequence<wiring::kBuses.size()>{}); }
+};
+
+}  // namespace robosync::boards::stm32l4
+
+extern template class robosync::boards::AskingBoard<robosync::boards::stm32l4::Buses>;
+
+namespace robosync::boards::stm32l4 {
+
+class Board final : public AskingBoard<Buses> {
 public:
   static constexpr std::uint32_t kWatchdogMs = 100;
 
@@ -29,19 +46,6 @@ public:
   link::ResetReason reset_reason() const override;
   const policy::BoardPins& pins() const override { return boards::kPins; }
   static_assert(!meet(kOutputs, kInputs) && !meet(kOutputs, kAnalog), "let_go() does nothing here");
-  bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
-                    std::span<std::byte> in) override;
-  bool i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
-                    std::span<std::byte> in) override;
-  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
-                    std::span<std::byte> in) override;
-  void spi_open(std::uint8_t bus, std::uint16_t select) override;
-  void spi_close() override;
-  BusState buses() const override;
-  bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
-  bool buses_ask_ahead() const override { return true; }
-  void ask_buses(bool ahead) override { asks_ahead_ = ahead; }
-  bool buses_busy() const override;
   bool input(std::uint16_t pin) const override;
   void ping(std::uint16_t trigger, std::uint16_t echo) override;
   std::uint32_t take_echo(std::uint16_t echo) override;
@@ -64,23 +68,13 @@ public:
 
   Line& line() { return line_; }
   Player& player() { return player_; }
-  I2c& i2c(unsigned bus) { return i2c_[bus]; }
 
 private:
-  template <std::size_t... kBus>
-  static constexpr std::array<I2c, sizeof...(kBus)> all_buses(
-      std::index_sequence<kBus...> /*of them*/) {
-    return {I2c(i2c_master(kBus))...};
-  }
-
   bool watchdog_reset_ = false;  // the watchdog reset the chip
   Line line_;
   Player player_;
   static_assert(ROBOSYNC_STORE_BYTES == flash::kBytesOfBank);
   FlashStore<Flash> store_{flash::kBank2, ROBOSYNC_STORE_BYTES};
-  bool asks_ahead_ = false;
-  std::array<I2c, wiring::kBuses.size()> i2c_ =
-      all_buses(std::make_index_sequence<wiring::kBuses.size()>{});
 };
 
 extern Board board;

@@ -2,17 +2,17 @@
 // when it is off it does not drive its clock.
 #include "runtime-m4/boards/stm32l4/spi.hpp"
 
-#include "runtime-m4/boards/common/asked_spi.hpp"
 #include "runtime-m4/boards/stm32l4/pins.hpp"
 #include "runtime-m4/boards/stm32l4/wiring.hpp"
 
-namespace robosync::boards::stm32l4::parts {
+namespace robosync::boards::stm32l4 {
 namespace {
 
 using spi::kDma, spi::kDmaToMemory, wiring::kSpi;
 
-// The last bit has been received half a clock before its end, 0.8 us, and a poll takes at least four cycles of 80 MHz.
-constexpr unsigned kLooks = 40;
+// The last bit has been received half a clock before its end, 0.8 us, and a poll takes at least four cycles of 80 MHz: 16 polls, and
+// some more.
+constexpr unsigned kLooks = 20;
 
 void set_up(const DmaChannel& channel) {
   kDmaSelect.set_field(channel.number - 1, 4, spi::kDmaForSpi);
@@ -53,7 +53,9 @@ bool has_ended() {
   return false;
 }
 
-struct Master {  // for AskedSpi
+}  // namespace
+
+struct SpiMaster {  // for AskedSpi
   static void open() {
     rcc::give_clock(rcc::kAhb1, rcc::kDma1);
     rcc::give_clock(rcc::kApb2, rcc::kSpi1);
@@ -99,44 +101,16 @@ struct Master {  // for AskedSpi
     switch_on();
   }
 
+  static void begin_select(std::uint16_t pin) { pins::begin_select(pin); }
   static void select(std::uint16_t pin, bool on) { pins::select(pin, on); }
+  static void end_select(std::uint16_t pin) { pins::take_back(pin); }
 };
 
-constinit AskedSpi<Master> bus;
-std::uint32_t outputs_that_select = 0;  // bit p: pin p
-
-}  // namespace
-
-void open(std::uint16_t select) {
-  if (select != wiring::kEnable.pin) {
-    pins::begin_select(select);
-    outputs_that_select |= 1U << select;
-  }
-  bus.open();
-}
-
-void close() {
-  bus.close();
-  for (std::uint16_t pin = 0; outputs_that_select != 0; ++pin, outputs_that_select >>= 1)
-    if ((outputs_that_select & 1) != 0) pins::take_back(pin);
-}
-
-bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
-              std::span<std::byte> in) {
-  return bus.transfer(ahead, select, out, in);
-}
-
-bool is_busy() {
-  return bus.is_busy();
-}
-
-void on_interrupt() {
-  bus.on_interrupt();
-}
-
-void switch_off() {
+void switch_spi_off() {
   for (const Output& output : wiring::kOutputs)
     pins::take_back(output.pin);
 }
 
-}  // namespace robosync::boards::stm32l4::parts
+}  // namespace robosync::boards::stm32l4
+
+template class robosync::boards::AskedSpi<robosync::boards::stm32l4::SpiMaster>;

@@ -1,20 +1,16 @@
 // The SPI bus for parts, on SPI1 and two channels of DMA1, at 625 kHz (wiring::kSpi). A panel of lights needs SPI1, too.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
+#include "runtime-m4/boards/common/asked_spi.hpp"
 
-namespace robosync::boards::stm32l4::parts {
+namespace robosync::boards::stm32l4 {
 
-// As in boards::Board (spi_open(), spi_close(), spi_transfer() after ask_buses()).
-void open(std::uint16_t select);
-void close();
-[[nodiscard]] bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
-                            std::span<std::byte> in);
-[[nodiscard]] bool is_busy();
-void on_interrupt();
-// The pins are low, or return to their timers; until it is opened again after start-up. [any processor state]
-void switch_off();
+struct SpiMaster;
+using PartBus = AskedSpi<SpiMaster>;
 
-}  // namespace robosync::boards::stm32l4::parts
+// All its pins for pulses are low, or return to their timers; until it is opened again after start-up. [any processor state]
+void switch_spi_off();
+
+}  // namespace robosync::boards::stm32l4
+
+extern template class robosync::boards::AskedSpi<robosync::boards::stm32l4::SpiMaster>;

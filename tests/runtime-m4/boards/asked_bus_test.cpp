@@ -6,8 +6,8 @@
 
 #include "runtime-m4/boards/microbit-v2/i2c.hpp"
 #include "runtime-m4/boards/stm32l4/i2c.hpp"
-#include "runtime-m4/policy/costs.hpp"
 #include "runtime-m4/policy/rules.hpp"
+#include "tests/runtime-m4/boards/board_costs.hpp"
 #include "tests/runtime-m4/boards/nrf52833_twim.hpp"
 #include "tests/runtime-m4/boards/stm32_i2c.hpp"
 
@@ -15,22 +15,13 @@ using namespace robosync;
 
 namespace {
 
-#define COST(name, value, note) .name = (value),
-constexpr policy::BoardCosts kMicrobitCosts = {
-#include "runtime-m4/boards/microbit-v2/costs.def"
-};
-constexpr policy::BoardCosts kL475Costs = {
-#include "runtime-m4/boards/b-l475e-iot01a/costs.def"
-};
-#undef COST
-
 constexpr std::byte operator""_b(unsigned long long value) {
   return static_cast<std::byte>(value);
 }
 
 // Nordic: TWIM0; tech.microbit.org: the internal bus is P0.08 and P0.16.
 struct MicrobitBus : tests::TwimBus {
-  static constexpr const policy::BoardCosts& kCosts = kMicrobitCosts;
+  static constexpr const policy::BoardCosts& kCosts = tests::kMicrobitCosts;
   static constexpr unsigned kInterrupts = 1;  // for a read
   MicrobitBus() : TwimBus(0x4000'3000, {0, 8}, {0, 16}) {}
   boards::microbit::I2c bus{{boards::microbit::kTwim0, {.clock = {0, 8}, .data = {0, 16}}}};
@@ -39,7 +30,7 @@ struct MicrobitBus : tests::TwimBus {
 // RM0351: I2C1 and I2C2 with their requests of DMA1; UM2153: PB8 and PB9 are D15 and D14, PB10 and PB11 the sensors' on the board.
 template <unsigned kNumber>
 struct L475Bus : tests::Stm32I2c {
-  static constexpr const policy::BoardCosts& kCosts = kL475Costs;
+  static constexpr const policy::BoardCosts& kCosts = tests::kL475Costs;
   static constexpr unsigned kInterrupts = 2;  // one after the request, one after the answer
   static constexpr bool kOwn = kNumber == 2;
   L475Bus()

@@ -1,7 +1,5 @@
 // The shipped SPI code of the boards, against models of their masters: results are ready in time and cost an interrupt each, a
 // part is selected during its transfers only, and whatever the hardware does, no thread waits for it.
-#include "runtime-m4/boards/common/asked_spi.hpp"
-
 #include <array>
 #include <optional>
 #include <type_traits>
@@ -15,49 +13,34 @@
 #include "runtime-m4/boards/stm32l4/inputs.hpp"
 #include "runtime-m4/boards/stm32l4/pins.hpp"
 #include "runtime-m4/boards/stm32l4/spi.hpp"
-#include "runtime-m4/policy/costs.hpp"
 #include "runtime-m4/policy/rules.hpp"
+#include "tests/runtime-m4/boards/board_costs.hpp"
 #include "tests/runtime-m4/boards/spi_parts.hpp"
 
 using namespace robosync;
 
 namespace {
 
-#define COST(name, value, note) .name = (value),
-constexpr policy::BoardCosts kMicrobitCosts = {
-#include "runtime-m4/boards/microbit-v2/costs.def"
-};
-constexpr policy::BoardCosts kL475Costs = {
-#include "runtime-m4/boards/b-l475e-iot01a/costs.def"
-};
-#undef COST
-
 // Pin 16 is for an enable input, pin 2 an output.
 struct Microbit : tests::SpimParts {
-  static constexpr const policy::BoardCosts& kCosts = kMicrobitCosts;
+  static constexpr const policy::BoardCosts& kCosts = tests::kMicrobitCosts;
   static constexpr std::uint16_t kFirst = 16, kOther = 2;
   static constexpr unsigned kTransferUs = 24;
   Microbit() {
     boards::microbit::pins::start();
     boards::microbit::player::start();
   }
-  static void open(std::uint16_t select) { boards::microbit::spi::open(select); }
-  static void close() { boards::microbit::spi::close(); }
-  static bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
-                       std::span<std::byte> in) {
-    return boards::microbit::spi::transfer(ahead, select, out, in);
-  }
-  static bool is_busy() { return boards::microbit::spi::is_busy(); }
-  static void on_interrupt() { boards::microbit::spi::on_interrupt(); }
-  static void switch_off() { boards::microbit::spi::switch_off(); }
+  static void switch_off() { boards::microbit::switch_spi_off(); }
   bool is_high(std::uint16_t pin) const {
     return level(pin == kFirst ? Pin{1, 2} : Pin{0, 4}) == Level::high;
   }
+
+  boards::microbit::PartBus spi;
 };
 
 // Pin 45 is for an enable input, pin 10 an output.
 struct L475 : tests::Stm32SpiParts {
-  static constexpr const policy::BoardCosts& kCosts = kL475Costs;
+  static constexpr const policy::BoardCosts& kCosts = tests::kL475Costs;
   static constexpr std::uint16_t kFirst = 45, kOther = 10;
   static constexpr unsigned kTransferUs = 39;
   L475() {
@@ -65,18 +48,12 @@ struct L475 : tests::Stm32SpiParts {
     boards::stm32l4::pins::start();
     boards::stm32l4::inputs::start();
   }
-  static void open(std::uint16_t select) { boards::stm32l4::parts::open(select); }
-  static void close() { boards::stm32l4::parts::close(); }
-  static bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
-                       std::span<std::byte> in) {
-    return boards::stm32l4::parts::transfer(ahead, select, out, in);
-  }
-  static bool is_busy() { return boards::stm32l4::parts::is_busy(); }
-  static void on_interrupt() { boards::stm32l4::parts::on_interrupt(); }
-  static void switch_off() { boards::stm32l4::parts::switch_off(); }
+  static void switch_off() { boards::stm32l4::switch_spi_off(); }
   bool is_high(std::uint16_t pin) const {
     return level(pin == kFirst ? Pin{'C', 0} : Pin{'A', 2}) == Level::high;
   }
+
+  boards::stm32l4::PartBus spi;
 };
 
 using Read = std::optional<std::vector<std::uint8_t>>;
@@ -89,10 +66,10 @@ struct Bus : Model {
       this->answers[Model::kFirst][byte] = {static_cast<std::uint8_t>(command ^ 0x5A), 0x11};
       this->answers[Model::kOther][byte] = {static_cast<std::uint8_t>(command ^ 0xA5), 0x22};
     }
-    Model::open(Model::kFirst);
-    Model::open(Model::kOther);
+    this->spi.open(Model::kFirst);
+    this->spi.open(Model::kOther);
   }
-  ~Bus() { Model::close(); }
+  ~Bus() { this->spi.close(); }
   // The processor takes each interrupt `latency` microseconds late.
   void run(unsigned microseconds, unsigned latency = 0) {
     unsigned waits = 0;
@@ -101,19 +78,19 @@ struct Bus : Model {
       if (!this->interrupt() || waits++ < latency) continue;
       waits = 0;
       ++interrupts;
-      Model::on_interrupt();
+      this->spi.on_interrupt();
       REQUIRE_FALSE(this->interrupt());
     }
   }
   bool ask(std::uint16_t select, unsigned command, std::size_t count = 2) {
     std::array<std::byte, 3> in{};
-    return Model::transfer(true, select, std::array{static_cast<std::byte>(command)},
-                           std::span(in).first(count));
+    return this->spi.transfer(true, select, std::array{static_cast<std::byte>(command)},
+                              std::span(in).first(count));
   }
   Read collect(std::uint16_t select, unsigned command, std::size_t count = 2) {
     std::array<std::byte, 3> in{};
-    if (!Model::transfer(false, select, std::array{static_cast<std::byte>(command)},
-                         std::span(in).first(count)))
+    if (!this->spi.transfer(false, select, std::array{static_cast<std::byte>(command)},
+                            std::span(in).first(count)))
       return std::nullopt;
     std::vector<std::uint8_t> bytes;
     for (std::size_t i = 0; i < count; ++i)
@@ -137,11 +114,11 @@ TEMPLATE_TEST_CASE("SPI: what is asked ahead is there soon, by an interrupt", ""
   for (unsigned round = 1; round <= 3; ++round) {
     bus.answers[TestType::kFirst][0x8F] = {static_cast<std::uint8_t>(round), 0x77};
     CHECK_FALSE(bus.ask(TestType::kFirst, 0x8F));
-    CHECK(bus.is_busy());
+    CHECK(bus.spi.is_busy());
     CHECK_FALSE(bus.is_high(TestType::kFirst));
     CHECK(bus.is_high(TestType::kOther));
     bus.run(TestType::kTransferUs);
-    CHECK_FALSE(bus.is_busy());
+    CHECK_FALSE(bus.spi.is_busy());
     CHECK(bus.all_are_high());
     CHECK(bus.interrupts == round);
     for (unsigned times = 0; times < 2; ++times)
@@ -161,7 +138,7 @@ TEMPLATE_TEST_CASE("SPI: who wants the same gets it together, others one after t
   bus.ask(first, 2);
   bus.ask(first, 1, 1);
   bus.run(500);
-  CHECK_FALSE(bus.is_busy());
+  CHECK_FALSE(bus.spi.is_busy());
   CHECK(bus.all_are_high());
   using Heard = tests::SpiParts::Heard;
   CHECK(bus.heard == std::vector{Heard{first, {1, 0, 0}}, Heard{other, {1, 0, 0}},
@@ -195,7 +172,7 @@ TEMPLATE_TEST_CASE("SPI: what is not there in time is given up, and the next one
   bus.run(10);
   CHECK(bus.collect(first, 1) == std::nullopt);
   CHECK(bus.all_are_high());
-  CHECK_FALSE(bus.is_busy());
+  CHECK_FALSE(bus.spi.is_busy());
   bus.ask(first, 1);
   bus.run(60);
   CHECK(bus.collect(first, 1) == bytes({0x5B, 0x11}));
@@ -204,7 +181,7 @@ TEMPLATE_TEST_CASE("SPI: what is not there in time is given up, and the next one
   bus.ask(other, 3);
   bus.ask(other, 4);
   bus.run(3000);
-  CHECK(bus.is_busy());
+  CHECK(bus.spi.is_busy());
   CHECK(bus.collect(other, 3) == std::nullopt);  // ends the running one, which is another
   CHECK(bus.is_high(first));
   CHECK_FALSE(bus.is_high(other));
@@ -224,8 +201,8 @@ TEMPLATE_TEST_CASE("SPI: a late interrupt of a transfer that was given up means 
   CHECK(bus.interrupt());
   CHECK(bus.collect(TestType::kFirst, 1) == std::nullopt);
   bus.ask(TestType::kFirst, 2);
-  bus.on_interrupt();
-  CHECK(bus.is_busy());
+  bus.spi.on_interrupt();
+  CHECK(bus.spi.is_busy());
   bus.run(60);
   CHECK(bus.collect(TestType::kFirst, 2) == bytes({0x58, 0x11}));
 }
@@ -239,11 +216,11 @@ TEMPLATE_TEST_CASE("SPI: without a part the line is pulled up; requests that can
   CHECK(bus.collect(TestType::kFirst, 1) == bytes({0xFF, 0xFF}));
   std::array<std::byte, 3> in{};
   const std::array<std::byte, 2> two{};
-  CHECK_FALSE(TestType::transfer(true, TestType::kFirst, two, std::span(in).first(1)));
+  CHECK_FALSE(bus.spi.transfer(true, TestType::kFirst, two, std::span(in).first(1)));
   CHECK_FALSE(bus.ask(TestType::kFirst, 1, 3));
   CHECK_FALSE(bus.ask(TestType::kFirst, 1, 0));
   CHECK_FALSE(bus.ask(TestType::kFirst + 256, 1));
-  CHECK_FALSE(bus.is_busy());
+  CHECK_FALSE(bus.spi.is_busy());
 }
 
 TEMPLATE_TEST_CASE("SPI: a bus that is closed has forgotten all, and its pins are free", "",
@@ -253,21 +230,21 @@ TEMPLATE_TEST_CASE("SPI: a bus that is closed has forgotten all, and its pins ar
   bus.run(60);
   bus.ask(TestType::kOther, 2);
   bus.run(5);
-  TestType::close();
-  CHECK_FALSE(bus.is_busy());
+  bus.spi.close();
+  CHECK_FALSE(bus.spi.is_busy());
   CHECK_FALSE(bus.is_on());
   CHECK(bus.is_high(TestType::kFirst));
   CHECK_FALSE(bus.is_high(TestType::kOther));  // an output that nobody has is low
   bus.ask(TestType::kOther, 1);
-  CHECK_FALSE(bus.is_busy());
+  CHECK_FALSE(bus.spi.is_busy());
   CHECK(bus.collect(TestType::kOther, 1) == std::nullopt);
-  TestType::open(TestType::kOther);
+  bus.spi.open(TestType::kOther);
   CHECK(bus.all_are_high());
   bus.ask(TestType::kFirst, 2);
   bus.run(5);
-  TestType::close();
+  bus.spi.close();
   CHECK(bus.is_high(TestType::kFirst));
-  TestType::open(TestType::kOther);
+  bus.spi.open(TestType::kOther);
   CHECK(bus.collect(TestType::kOther, 1) == std::nullopt);
   bus.ask(TestType::kOther, 1);
   bus.run(60);
@@ -278,13 +255,13 @@ TEMPLATE_TEST_CASE("SPI: a bus that is closed has forgotten all, and its pins ar
 TEMPLATE_TEST_CASE("SPI: what rsc lets be asked at once is there in time", "", Microbit, L475) {
   const policy::BoardCosts& board = TestType::kCosts;
   const unsigned fit = policy::kBusWindowUs / (board.spi_transfer_us + 3 * board.spi_byte_us);
-  using Requests = boards::AskedSpi<int>;
+  using Requests = boards::microbit::PartBus;
   const unsigned count = std::min<unsigned>(fit, Requests::kMostRequests);
   Bus<TestType> bus;
   for (unsigned i = 0; i < count; ++i)
     bus.ask(i % 2 == 0 ? TestType::kFirst : TestType::kOther, i);
   bus.run(count * (board.spi_transfer_us + 3 * board.spi_byte_us), 12);
-  CHECK_FALSE(bus.is_busy());
+  CHECK_FALSE(bus.spi.is_busy());
   for (unsigned i = 0; i < count; ++i)
     CHECK(bus.collect(i % 2 == 0 ? TestType::kFirst : TestType::kOther, i).has_value());
   for (unsigned i = count; i <= Requests::kMostRequests; ++i)  // more than there is room for
@@ -301,7 +278,7 @@ TEST_CASE(
   bus.loses_one = true;
   bus.ask(16, 1);
   bus.run(60);
-  CHECK_FALSE(bus.is_busy());
+  CHECK_FALSE(bus.spi.is_busy());
   CHECK(bus.collect(16, 1) == std::nullopt);
   bus.loses_one = false;
   bus.is_dead = true;
@@ -309,7 +286,7 @@ TEST_CASE(
   bus.run(60);
   CHECK(bus.collect(16, 1) == std::nullopt);
   CHECK(bus.all_are_high());
-  Microbit::close();
+  bus.spi.close();
   CHECK(bus.player_has_its_pin());
   CHECK(bus.level(Microbit::kClock) == Microbit::Level::low);
   CHECK(bus.level(Microbit::kInput) == Microbit::Level::low);
@@ -322,7 +299,7 @@ TEST_CASE("STM32L475: DMA that fails, or takes no byte, is a transfer that faile
     bus.dma_fails = true;
     bus.ask(45, 1);
     bus.run(100, latency);
-    CHECK_FALSE(bus.is_busy());
+    CHECK_FALSE(bus.spi.is_busy());
     CHECK(bus.collect(45, 1) == std::nullopt);
     CHECK(bus.all_are_high());
     bus.dma_is_late = true;
@@ -339,7 +316,7 @@ TEST_CASE("STM32L475: DMA that fails, or takes no byte, is a transfer that faile
 TEST_CASE("STM32L475: the pins of the bus are the header's again when it is closed") {
   Bus<L475> bus;
   CHECK(bus.has_pins());
-  L475::close();
+  bus.spi.close();
   CHECK(bus.level({'A', 5}) == L475::Level::low);
   CHECK_FALSE(bus.has_pin(6));
   CHECK(bus.level({'A', 7}) == L475::Level::low);
