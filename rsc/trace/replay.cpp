@@ -71,8 +71,10 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file,
   const TraceNames names{&image, {}, nullptr};
   const auto attempt = [&] {
     std::vector<Decided> replayed;
+    ReplayFeeder* feeder = nullptr;
     const auto take = [&](const link::Event& event) {
       Json line = Json::parse(trace_json(event, names));
+      if (feeder != nullptr) feeder->see(line);
       if (is_compared(kind_of(line))) replayed.push_back({std::move(line), event});
     };
     const std::set<std::uint8_t> silent = silent_ones(readings);
@@ -81,7 +83,9 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file,
     sim::Simulator simulator(bytes, take, program.board(), seed_of(recorded));
     if (!simulator.verdict().ok())
       throw Failure(Exit::program, name + " does not run on this computer");
-    feed_readings(simulator, recorded, image, readings, silent);
+    ReplayFeeder own(simulator, recorded, image, readings, silent);
+    feeder = &own;
+    feeder->run();
     return compare(recorded.events, replayed, is_other ? Lines::of_another : Lines::compared,
                    names);
   };
