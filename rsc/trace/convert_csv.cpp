@@ -24,13 +24,12 @@ std::string cell_of(const std::string& text) {
   return cell + '"';
 }
 
-// The same in every file, so that the tables of several runs can be put together. Documented in docs/scenario.md; add new ones
-// before the last, which takes the keys that are no column of their own.
-constexpr std::string_view kColumns =
-    "program,t_us,step,event,sensor,channel,variable,value,unit,actuator,verb,word,to,by,at,over,"
-    "for,times,direction,item,"
-    "values,rule,behavior,safety,line,side,text,thread,priority,base,seed,late_us,failed,bus,"
-    "address,pin,trigger,echo,why,more";
+constexpr std::string_view kEach =
+#define COLUMNS(names, doc) names ","
+#include "rsc/trace/csv_columns.def"
+#undef COLUMNS
+    ;
+constexpr std::string_view kColumns = kEach.substr(0, kEach.size() - 1);
 constexpr auto kCommas = static_cast<std::size_t>(std::ranges::count(kColumns, ','));
 
 // The cells of `line` in the order of the columns, with commas between them.

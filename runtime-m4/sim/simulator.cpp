@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -88,6 +89,7 @@ struct Simulator::Impl {
   }
 
   bool is_fed(std::uint8_t channel) const;
+  void feed(std::uint64_t tick, std::uint8_t channel, vm::Value value);
   std::uint64_t hand_over(std::uint64_t until_us);
 
   kernel::Kernel kernel;
@@ -99,11 +101,21 @@ struct Simulator::Impl {
   vm::Verdict verdict;
   // Feeds not yet handed over: tick, then channel.
   std::map<std::uint64_t, std::map<std::uint8_t, vm::Value>> waiting;
+  std::optional<std::uint64_t> running_until;  // while the robot runs
 };
 
 bool Simulator::Impl::is_fed(std::uint8_t channel) const {
   const vm::Image& program = runtime.image();
   return policy::is_fed(program.sensors[program.channels[channel].sensor]);
+}
+
+// A feed of the sink is for the run that is on.
+void Simulator::Impl::feed(std::uint64_t tick, std::uint8_t channel, vm::Value value) {
+  const bool is_for_this_run = running_until && tick <= *running_until;
+  if (!is_for_this_run ||
+      runtime.enqueue({.channel = channel, .at_us = tick, .value = value}).error !=
+          link::FeedError::none)
+    waiting[tick][channel] = value;
 }
 
 // Hands over whole ticks, as many as fit into the runtime's queue. Returns the time to run until
@@ -143,7 +155,7 @@ void Simulator::feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value)
   if (!impl_->runtime.running() || channel >= impl_->runtime.image().channels.size()) return;
   const std::uint64_t tick = next_tick(std::max(at_us, impl_->kernel.now()));
   if (impl_->is_fed(channel)) {
-    impl_->waiting[tick][channel] = value;
+    impl_->feed(tick, channel, value);
   } else {
     impl_->held.hold(channel, tick, value);
   }
@@ -157,7 +169,9 @@ void Simulator::run_until(std::uint64_t until_us) {
   std::uint64_t reached = 0;
   do {
     reached = impl_->hand_over(until_us);
+    impl_->running_until = reached;
     impl_->kernel.machine().run_until(reached);
+    impl_->running_until.reset();
   } while (reached < until_us);
 }
 

@@ -34,7 +34,7 @@ public:
   // kUnknown it fails to measure. On the host every sensor can be fed, whatever its driver: one
   // that samples finds the value at its next period. Feeds may come in any number and order. Of two
   // for the same channel and tick the last one counts; a feed for a time that has passed is one for
-  // now.
+  // now. The sink may feed, too: the next step has what it feeds for now.
   void feed(std::uint64_t at_us, std::uint8_t channel, vm::Value value);
 
   // False for a feed of a sampled channel that no sample has measured so far.

@@ -132,6 +132,37 @@ END
   CHECK(replay.exit == 0);
 }
 
+TEST_CASE(
+    "a reading is held back behind no more than the step before it, though a WHILE begins its next "
+    "round") {
+  const test::Folder folder;
+  (void)folder.write("robot.json", R"({
+    "sensors": [{"name": "left", "type": "ADC", "pin": 44, "device": "analog"},
+                {"name": "right", "type": "ADC", "pin": 45, "device": "analog"}],
+    "actuators": [{"name": "arm", "type": "PWM", "pin": 4, "device": "servo"}]})");
+  const std::string program = folder.write("robot.rsl", R"(BEHAVIOR low PRIORITY 10
+  WHILE left LEVEL > 50% DO
+    MOVE arm TO 10deg
+    WAIT 1s
+  END
+END
+BEHAVIOR high PRIORITY 20
+  WHEN right LEVEL > 50% DO MOVE arm TO 90deg END
+END
+)");
+  const std::string scenario = folder.write("visit.json", R"({"duration": "4s", "stimuli": [
+    {"at": "0s", "sensor": "left", "value": "1%"}, {"at": "0s", "sensor": "right", "value": "1%"},
+    {"at": "1s", "sensor": "left", "value": "90%"}, {"at": "2s", "sensor": "right", "value": "90%"}]})");
+  const Outcome run = test::rsc(
+      {"run", program, "--scenario", scenario, "--all", "--record", folder.path("r.jsonl")});
+  CAPTURE(run.err);
+  REQUIRE_THAT(run.out, Contains("2.000 s  low, rule at line 2 is finished\n"
+                                 "   2.000 s  right LEVEL = 90%"));
+  const Outcome replay = test::rsc({"replay", folder.path("r.jsonl")});
+  CHECK_THAT(replay.out, Contains("the same as recorded"));
+  CHECK(replay.exit == 0);
+}
+
 TEST_CASE("replay says where a recording and its replay differ first") {
   const Recorded robot;
   Outcome outcome = robot.replay(robot.read("r.jsonl"));

@@ -5,10 +5,12 @@
 #include <sstream>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "rsc/trace/csv.hpp"
 #include "tests/rsc/process.hpp"
+#include "tests/support/generated.hpp"
 
 using namespace robosync;
 using Catch::Contains;
@@ -221,6 +223,20 @@ TEST_CASE("a trace as CSV has the same columns for every trace, and one for each
                                                    "\n");
   CHECK_THAT(test::rsc({"trace", "convert", odd, "--to", "csv"}).out,
              Contains(R"(,"{""program"":7,""more"":1}")"));
+}
+
+TEST_CASE("docs/scenario.md says what each column of the CSV has") {
+  std::string table = "| columns | what |\n|---|---|\n";
+  const auto add = [&](std::string names, std::string_view doc) {
+    for (std::size_t at = 0; (at = names.find(',', at)) != std::string::npos; at += 4)
+      names.replace(at, 1, "`, `");
+    table += fmt::format("| `{}` | {} |\n", names, doc);
+  };
+#define COLUMNS(names, doc) add(names, doc);
+#include "rsc/trace/csv_columns.def"
+#undef COLUMNS
+  testing::expect_generated(std::filesystem::path(ROBOSYNC_SOURCE_DIR) / "docs/scenario.md",
+                            "csv columns", table);
 }
 
 TEST_CASE("a SAFETY rule that trips or lets go has its name in the trace and in CSV") {
