@@ -1,6 +1,5 @@
 """The examples, and random readings for each, from its robot.json."""
 
-import json
 import random
 import re
 import sys
@@ -11,6 +10,7 @@ EXAMPLES = ROOT / "examples"
 MOST_COUNTED = 8  # more than an example distinguishes
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
+import on_board  # noqa: E402
 from board import NAME  # noqa: E402
 from on_board import fed, without_parts  # noqa: E402
 from stimuli import Reading  # noqa: E402
@@ -23,7 +23,7 @@ def folders():
 def config(folder):
     """Its robot.json with virtual sensors instead of real ones, so that the board can be fed. On a board other than the
     example's, that board's parts are replaced by virtual actuators, too."""
-    robot = json.loads((folder / "robot.json").read_text())
+    robot = on_board.read(folder / "robot.json")
     robot = without_parts(robot, ("sensors",) if robot.get("board") == NAME else ("sensors", "actuators"))
     for sensor in robot["sensors"]:
         if sensor.get("type") != "VIRTUAL":
@@ -33,9 +33,6 @@ def config(folder):
         sensor["type"] = "VIRTUAL"
         for channel in sensor.get("channels", {}).values():
             channel.pop("input", None)
-    for algorithm in robot.get("algorithms", []):
-        if words := algorithm.get("config", {}).get("words"):
-            algorithm["config"]["words"] = str(folder / words)
     return robot
 
 

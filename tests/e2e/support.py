@@ -16,6 +16,7 @@ from board import DEVICES, FAST, FIRMWARE, NAME, ROOT, Board
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "generators/programs"))
 
+import on_board  # noqa: E402
 from stimuli import UNITS  # noqa: E402
 
 PROGRAMS = HERE / "programs"
@@ -99,11 +100,8 @@ class RobotTest(unittest.TestCase):
 
     def for_board(self, config):
         """Adapts a robot.json to the running board: to pins that it has."""
-        robot = json.loads(Path(config).read_text())
+        robot = on_board.read(config)
         wired_as_it_can(robot.get("actuators", []))
-        for algorithm in robot.get("algorithms", []):
-            if words := algorithm.get("config", {}).get("words"):
-                algorithm["config"]["words"] = str(Path(config).parent.resolve() / words)
         path = self.folder / "robot.json"
         path.write_text(json.dumps({**robot, "board": NAME}))
         return path

@@ -265,9 +265,8 @@ class LargeModule(FirmwareTest):
     def test_it_stays_within_it(self):
         arena = json.loads((ROOT / f"stdlib/boards/{NAME}.json").read_text())["arena"]
         begin = int(arena["begin"], 16) + arena["bytes"] - self.REGION
-        robot = json.loads((PROGRAMS / "listening.json").read_text())
-        robot["algorithms"][0]["config"]["words"] = str(PROGRAMS / "listening.words")
-        self.upload((PROGRAMS / "listening.rsl").read_text(), {**robot, "board": NAME})
+        robot = json.loads(self.for_board(PROGRAMS / "listening.json").read_text())
+        self.upload((PROGRAMS / "listening.rsl").read_text(), robot)
         reader = LineReader("feed", *(f"microphone.BANDS_{i}=0" for i in range(1, 5)), "--port", self.board.port,
                             "--watch", "60s", "--format", "json")
         try:

@@ -6,13 +6,13 @@ import json
 import os
 import random
 import re
-import shutil
 import subprocess
 import tempfile
 import unittest
 from collections import Counter
 from pathlib import Path
 
+import on_board
 import paths
 import rsc
 import stimuli
@@ -631,12 +631,10 @@ class Paths(unittest.TestCase):
             self.assertLessEqual(worst, said)
 
     def check(self, program, folder):
-        wiring = without_parts(json.loads(program.with_suffix(".json").read_text()))
+        wiring = without_parts(on_board.read(program.with_suffix(".json")))
         wiring["sensors"] = [sensor if sensor["type"] == "VIRTUAL" else fed(sensor) for sensor in wiring["sensors"]]
         config, image = folder / "robot.json", folder / "p.rsb"
         config.write_text(json.dumps(wiring))
-        for words in program.parent.glob("*.words"):
-            shutil.copy(words, folder)
         paths.compiled(program, config, image)
         said = self.said(program, config)
         sensor, waits, channels, names = None, False, [], {}

@@ -1,4 +1,5 @@
-"""A robot without the parts that are soldered to its board: it can run on another one, and a test can feed all of it."""
+"""A robot.json changed for a test: without the parts that are soldered to its board, it can run on another one, and a test can feed all
+of it."""
 
 import json
 from pathlib import Path
@@ -6,6 +7,16 @@ from pathlib import Path
 STDLIB = Path(__file__).resolve().parents[3] / "stdlib"
 GENERIC = {"LEVEL": {"range": [0, 4095]}}  # of a sensor that says nothing of itself
 KEPT = ("unit", "range", "labels")  # of a channel: what is fed has no inputs and no scale
+
+
+def read(path):
+    """The robot.json at that path, so that it may be written to another folder: it names each file of words by its whole path."""
+    robot, folder = json.loads(Path(path).read_text()), Path(path).resolve().parent
+    for algorithm in robot.get("algorithms", []):
+        words = folder / algorithm.get("config", {}).get("words", f"{algorithm['name']}.words")
+        if words.is_file():
+            algorithm.setdefault("config", {})["words"] = str(words)
+    return robot
 
 
 def without_parts(robot, kinds=("sensors", "actuators")):
