@@ -17,7 +17,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/boards/common/asked_bus.hpp"
+#include "runtime-m4/boards/common/transfer.hpp"
 #include "runtime-m4/port/cortex-m4/register.hpp"
 #include "vm/drivers.hpp"
 

@@ -1,6 +1,6 @@
 # The board's sources, linker script and clock, and QEMU's name for it (boards/common/firmware.cmake).
-set(board_sources board.cpp alarm.cpp analog.cpp buses.cpp clock.cpp echoes.cpp flash.cpp i2c.cpp inputs.cpp lights.cpp logo.cpp microphone.cpp panel.cpp pins.cpp player.cpp resets.cpp speaker.cpp spi.cpp thermometer.cpp)
-set(board_fast buses.cpp i2c.cpp)
+set(board_sources board.cpp alarm.cpp analog.cpp buses.cpp clock.cpp echoes.cpp flash.cpp i2c.cpp inputs.cpp lights.cpp logo.cpp microphone.cpp panel.cpp pins.cpp player.cpp resets.cpp speaker.cpp spi.cpp thermometer.cpp ../common/bus_requests.cpp)
+set(board_fast buses.cpp i2c.cpp ../common/bus_requests.cpp)
 set(board_script microbit_v2.ld)
 set(board_machine microbit)
 set(board_clock ROBOSYNC_CLOCK_IS_CALLED ROBOSYNC_CORE_COUNTS=4)
