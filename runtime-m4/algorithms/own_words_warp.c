@@ -12,7 +12,6 @@ int own_words_can_align(uint32_t a, uint32_t b) {
 void own_words_begin_warp(own_words_warp* self, uint32_t limit) {
   self->at = 0;
   self->limit = limit;
-  self->least = NEVER;
   for (uint32_t i = 0; i < BEFORE_FIRST; ++i) {
     self->costs[0][i] = self->costs[1][i] = self->costs[2][i] = NEVER;
     self->local[0][i] = self->local[1][i] = FAR;
@@ -71,9 +70,7 @@ uint32_t own_words_warp_row(own_words_warp* self, const own_words_speech* a,
   if (i == 0) begin_in_corner(self, end);
   now[0] = now[1] = now[2] = NEVER;
   here[0] = here[1] = FAR;
-  const uint32_t of_two = smaller(least, self->least);  // every path passes one of any two rows
-  self->least = least;
-  return of_two <= self->limit ? end - first : 0;
+  return least <= self->limit ? end - first : 0;
 }
 
 static uint32_t all_apart(const own_words_speech* a, const own_words_speech* b) {

@@ -14,7 +14,6 @@ typedef struct own_words_warp {
   uint32_t costs[3][OWN_WORDS_ROW];
   uint16_t local[2][OWN_WORDS_ROW];
   uint32_t at;     // the next row
-  uint32_t least;  // the cost of the cheapest place in the last one
   uint32_t limit;  // what costs more is too far away
 } own_words_warp;
 
