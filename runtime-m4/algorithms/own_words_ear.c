@@ -109,7 +109,10 @@ uint32_t own_words_hear(own_words_ear* ear, const frame* heard) {
     return 0;
   }
   if (ear->length < OWN_WORDS_MOST_FRAMES) ear->said[ear->length] = *heard;
-  if (ear->length < UINT16_MAX) ++ear->length;
+  if (ear->length < UINT16_MAX)
+    ++ear->length;
+  else
+    --ear->loud_until;  // as long ago as it would be
   if (loud) ear->loud_until = ear->length;
   return ear->length - ear->loud_until >= PAUSE ? end_of_talk(ear) : 0;
 }
