@@ -210,6 +210,57 @@ TEST_CASE("with many words the work takes many blocks, and what is said meanwhil
   CHECK(robot.hear(kStop, 34, kLoudest, kQuiet, 160) == "15 0 16 0");
 }
 
+TEST_CASE("it is taught up to 24 words; a sample that cannot be one, and all behind it, is none") {
+  std::vector<std::int32_t> last;
+  teach(last, 23, kHello);
+  CHECK(Listener(last).hear(kHello, 33) == "24 0");
+  const std::int32_t long_one = own_words_header(0, OWN_WORDS_MOST_FRAMES + 1, 400);
+  for (const std::int32_t header :
+       {own_words_header(24, 33, 400), own_words_header(0, 0, 400), long_one}) {
+    std::vector<std::int32_t> constants = two_words();
+    std::vector<std::int32_t> broken{header};
+    broken.resize(1 + std::size_t{OWN_WORDS_VALUES} * (header >> 8 & 0xFF));
+    constants.insert(constants.end(), broken.begin(), broken.end());
+    teach(constants, 2, kOther);
+    Listener robot(constants);
+    CHECK(robot.hear(kStop, 33) == "2 0");
+    CHECK(robot.hear(kOther, 33).empty());
+    CHECK(robot.hear(kStop, 33) == "2 0");
+  }
+  std::vector<std::int32_t> cut = two_words();
+  cut.pop_back();
+  Listener robot(cut);
+  for (int times = 0; times < 2; ++times)
+    CHECK(robot.hear(kStop, 33) == "2 0");
+}
+
+TEST_CASE("it begins anew when it is told to, also in the middle of its work") {
+  std::vector<std::int32_t> many;
+  for (std::uint32_t number = 0; number < 16; ++number)
+    teach(many, number, number == 0 ? kHello : kOther, number == 0 ? 400 : 0);
+  Listener robot(many);
+  const auto begin = [&] { robot.module.init(robot.state.data(), robot.config.data(), kPeriodMs); };
+  (void)robot.hear(kHello, 33, kLoudest, kQuiet, 20);
+  REQUIRE(own_words_is_busy(robot.state.data()) != 0);
+  begin();
+  CHECK(own_words_is_busy(robot.state.data()) == 0);
+  CHECK(robot.hear(Word{}.said(60, 0)).empty());
+  const own_words_frame silence = Word{}.said(2, 0).front();
+  (void)robot.hear(kHello.said(33));
+  for (int frames = 0; frames < 100 && robot.word != 1000; ++frames)
+    robot.hear(silence);
+  CHECK(robot.word == 1000);
+  begin();
+  robot.hear(silence);
+  CHECK(robot.word == 0);
+}
+
+TEST_CASE("a word that is soft is heard after one that is loud") {
+  Listener robot(two_words());
+  CHECK(robot.hear(kHello, 33, 58) == "1 0");
+  CHECK(robot.hear(kStop, 33, 30) == "2 0");
+}
+
 TEST_CASE("whatever it was taught, and hears, it stays within its state and goes on") {
   std::mt19937 draw(3);
   for (int round = 0; round < 40; ++round) {
@@ -237,5 +288,7 @@ TEST_CASE("the distance of samples") {
   CHECK(distance(a, a) == 0);
   CHECK(distance(a, b) < 200);
   CHECK(distance(a, c) > 600);
+  const Frames silence(30, frame_of([](int) { return 63; }));
+  CHECK(distance(silence, a) == OWN_WORDS_APART);
   CHECK(distance(sample_of(kHello, 12), sample_of(kHello, 60)) == OWN_WORDS_APART);
 }
