@@ -21,7 +21,7 @@ from counting import symbols  # noqa: E402
 
 PATIENCE = 20
 P0_OUT = 0x5000_0504
-HAPPY = dict(enumerate((".....", ".#...", ".....", "#...#", ".##..")))  # what the test sees: not the fourth column
+HAPPY = [".....", ".#.#.", ".....", "#...#", ".###."]
 COSTS = ROOT / "runtime-m4/boards/microbit-v2/costs.def"
 # The microphone: its power, RESULT.PTR and CH[1].PSELP of SAADC, and the counter of its blocks, which
 # QEMU has (it has neither SAADC nor PPI).
@@ -114,7 +114,7 @@ class Hearing:
         self.assertTrue(reader.wait_for(lambda lines: any(told in line for line in lines), PATIENCE))
         reader.stop()
         self.assertEqual(self.readings(reader.lines)[:len(wanted)], wanted)
-        self.assertEqual(self.seen(wires), HAPPY)
+        self.assertEqual(self.seen(wires), dict(enumerate(row[:3] + "." + row[4] for row in HAPPY)))
         status = self.status()
         self.assertEqual((status["faults"], status["safety_late_us"]), (0, 0))
 

@@ -8,6 +8,9 @@
 
 #include <catch2/catch.hpp>
 
+// Other tests of one program use these names, too.
+namespace distances {
+
 using namespace robosync::companion;
 
 namespace {
@@ -86,3 +89,5 @@ TEST_CASE(
   CHECK(sound_alike({.own = 300, .nearest = 599}));
   CHECK_FALSE(sound_alike({.own = 300, .nearest = 600}));
 }
+
+}  // namespace distances

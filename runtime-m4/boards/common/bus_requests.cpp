@@ -19,21 +19,25 @@ using Word = BusRequest::Word;
   return std::equal(a, a + bytes, b);
 }
 
-[[gnu::always_inline]] inline bool is(const BusRequest& request, Word shape, Word head,
-                                      const std::byte* out) {
+[[gnu::always_inline]] inline bool begins_as(const BusRequest& request, Word shape, Word head) {
   Word known = 0;
   std::memcpy(&known, request.bytes.data(), sizeof known);
-  if (std::bit_cast<Word>(request.shape) != shape || known != head) return false;
-  const Word written = BusRequest::written_of(shape);
-  return written == 1 || are_same(out + 1, request.bytes.data() + sizeof known, written - 1);
+  return std::bit_cast<Word>(request.shape) == shape && known == head;
+}
+
+bool is(const BusRequest& request, Word shape, Word head, const std::byte* out) {
+  const Word more = BusRequest::written_of(shape) - 1;
+  return begins_as(request, shape, head) &&
+         (more == 0 || are_same(out + 1, request.bytes.data() + sizeof head, more));
 }
 
 }  // namespace
 
+// Most requests write one byte, and are the one that is expected.
 BusRequest* BusRequests::find(Word shape, Word head, const std::byte* out) {
   const std::uint8_t guess = guess_;
   BusRequest& request = requests_[guess];
-  if (!is(request, shape, head, out)) [[unlikely]]
+  if (!begins_as(request, shape, head) || BusRequest::written_of(shape) != 1) [[unlikely]]
     return search(shape, head, out);
   latest_ = guess;
   guess_ = request.follower;
@@ -41,12 +45,16 @@ BusRequest* BusRequests::find(Word shape, Word head, const std::byte* out) {
 }
 
 BusRequest* BusRequests::search(Word shape, Word head, const std::byte* out) {
-  for (BusRequest& request : used())
-    if (is(request, shape, head, out)) {
-      follow(request);
-      return &request;
-    }
-  return nullptr;
+  BusRequest* found = &requests_[guess_];
+  if (!is(*found, shape, head, out)) {
+    const auto all = used();
+    const auto it = std::ranges::find_if(
+        all, [&](const BusRequest& request) { return is(request, shape, head, out); });
+    if (it == all.end()) return nullptr;
+    found = &*it;
+  }
+  follow(*found);
+  return found;
 }
 
 void BusRequests::follow(BusRequest& request) {

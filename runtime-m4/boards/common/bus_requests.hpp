@@ -94,7 +94,7 @@ private:
   [[gnu::noinline]] BusRequest* search(Word shape, Word head, const std::byte* out);
   void follow(BusRequest& request);
 
-  std::size_t used_ = 0;     // requests, from the first on
+  std::uint8_t used_ = 0;    // requests, from the first on
   std::uint8_t latest_ = 0;  // the request that was looked for last
   std::uint8_t guess_ = 0;   // … and what was looked for next the last time
   std::array<BusRequest, kMost> requests_{};

@@ -13,6 +13,8 @@
 #include "runtime-m4/algorithms/own_words_ear.h"
 #include "runtime-m4/algorithms/own_words_warp.h"
 
+// Other tests of one program use these names, too.
+namespace own_words_parts {
 namespace {
 
 constexpr int kBands = OWN_WORDS_BANDS;
@@ -363,3 +365,5 @@ TEST_CASE(
   CHECK(ended > ways / 2);
   CHECK(own_words_can_align(0, 0) == 0);
 }
+
+}  // namespace own_words_parts
