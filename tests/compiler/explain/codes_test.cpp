@@ -9,6 +9,7 @@
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/algorithm_modules.hpp"
+#include "rsc/judge.hpp"
 
 using namespace robosync::compiler;
 using Catch::Contains;
@@ -43,9 +44,10 @@ struct Outcome {
 // RSL with a robot that has some of everything; or a robot.json with a program for any.
 Outcome compile_example(std::string_view example) {
   const bool json = example.starts_with('{');
-  const Result result = compile({"robot.rsl", json ? kProgram : std::string(example) + "\n"},
-                                {"robot.json", json ? std::string(example) : kRobot},
-                                {.algorithms = robosync::tool::algorithm_modules()});
+  Result result = compile({"robot.rsl", json ? kProgram : std::string(example) + "\n"},
+                          {"robot.json", json ? std::string(example) : kRobot},
+                          {.algorithms = robosync::tool::algorithm_modules()});
+  robosync::tool::judge(result, robosync::tool::Judged::by_time);
   Outcome outcome{
       {}, result.diagnostics.errors(), render_human(result.diagnostics, result.sources, false)};
   for (const Diagnostic& diagnostic : result.diagnostics.all())
