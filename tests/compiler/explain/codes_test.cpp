@@ -29,7 +29,8 @@ constexpr const char* kRobot = R"({
     {"name": "right_arm", "type": "PWM", "pin": 11, "device": "servo", "range": ["0deg", "120deg"]},
     {"name": "sound", "type": "VIRTUAL", "device": "speaker",
      "sounds": ["greeting.wav", "warning.wav"]},
-    {"name": "face", "type": "VIRTUAL", "device": "face"}
+    {"name": "face", "type": "VIRTUAL", "device": "face"},
+    {"name": "base", "type": "VIRTUAL", "device": "drive"}
   ],
   "groups": {"arms": ["left_arm", "right_arm"]}
 })";
