@@ -335,6 +335,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   const Device& device = known != nullptr ? *known : virtual_device(false);
   ActuatorConfig actuator = device.actuator;
   actuator.name = *name;
+  if (part != nullptr) actuator.part = part->name;
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
   if (known == nullptr) return actuator;

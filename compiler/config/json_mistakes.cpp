@@ -117,8 +117,9 @@ Span span_of(const Mistake& mistake, std::size_t begin, std::size_t end) {
 void mend(const Mistake& mistake, Span span, std::string_view replacement, Diagnostic& diagnostic) {
   std::string mended(mistake.text);
   mended.replace(span.begin, span.end - span.begin, replacement);
-  diagnostic.fix(span, std::string(replacement),
-                 nlohmann::json::accept(mended) ? Applicability::certain : Applicability::likely);
+  diagnostic.fix(
+      span, std::string(replacement),
+      nlohmann::ordered_json::accept(mended) ? Applicability::certain : Applicability::likely);
 }
 
 constexpr std::array<char32_t, 8> kCurlyQuotes = {0x2018, 0x2019, 0x201A, 0x201C,

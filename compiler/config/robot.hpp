@@ -61,6 +61,7 @@ struct CompanionConfig {
 struct SensorConfig {
   Spelled name;
   std::string device;  // its descriptor in stdlib/devices/
+  std::string part;    // of the board; empty: it is none
   vm::DriverId driver{};
   std::uint8_t bus = 0;
   std::uint16_t address = 0;    // or pin
@@ -128,6 +129,7 @@ struct PanelConfig {
 struct ActuatorConfig {
   Spelled name;
   std::string device;  // its descriptor in stdlib/devices/
+  std::string part;    // of the board; empty: it is none
   vm::DriverId driver{};
   std::uint8_t bus = 0;
   std::uint16_t pin = 0;  // or the channel of its chip, or the address of its display

@@ -356,6 +356,7 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   const Device& device = known != nullptr ? *known : virtual_device(true);
   SensorConfig sensor = device.sensor;
   sensor.name = *name;
+  if (part != nullptr) sensor.part = part->name;
   place_channels(sensor);
   if (known == nullptr) return sensor;
   const bool is_driven = device.has_driver;

@@ -161,7 +161,9 @@ void Commands::report_no_target(const ast::Command& command, const std::vector<s
           .report(Code::E0501, sensor ? first->name.shown() + " is a sensor, not an actuator"
                                       : "there is no actuator " + first->name.shown())
           .label(first->name.span);
-  if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size())) return;
+  if (!diagnostics_.may_search(robot_.actuators.size() + robot_.groups.size()) ||
+      names_.help_with_actuator(d, first->name))
+    return;
   const auto candidates = names_.target_names();
   did_you_mean(d, first->name.span, first->name.text, candidates);
   names_.doubt_group(d, first->name.text);
@@ -281,6 +283,7 @@ std::optional<Target> Commands::find_stopped(const ast::Name& name) {
             "` sets it back to 0");
     return std::nullopt;
   }
+  if (names_.help_with_actuator(d, name)) return std::nullopt;
   const auto candidates = names_.target_names();
   did_you_mean(d, name.span, name.text, candidates);
   names_.doubt_group(d, name.text);

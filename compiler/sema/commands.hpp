@@ -60,6 +60,8 @@ public:
   bool lacks_content(const ir::Command& command, Span span);
   // Reports a command that exceeds the limit of a motor, and returns true. `node` is its source.
   bool gives_too_much(const ast::Command& node, const ir::Command& command);
+  // Of a drive.
+  void note_no_amount(const ast::Command& node, const ir::Command& command);
 
   // Is it FOLLOW, which is not a verb of any robot?
   [[nodiscard]] bool is_follow(const ast::Command& command) const;

@@ -313,6 +313,19 @@ static bool stands_for_actuator(const ActuatorConfig& actuator, const ast::Comma
          actuator.find_word(next->name.text) != nullptr;
 }
 
+// What may be meant: a word of the actuator, a target, or a word of RSL that may come later in a line of commands. Not the word
+// itself, which is one of these in the wrong place.
+static std::vector<std::string> meant_instead(std::vector<std::string> words,
+                                              const std::vector<std::string>& targets,
+                                              const ast::Word& word) {
+  words.insert(words.end(), targets.begin(), targets.end());
+  for (const char* const keyword :
+       {"TO", "BY", "OVER", "AT", "FOR", "MARGIN", "TIMES", "WITH", "ELSE", "END"})
+    words.emplace_back(keyword);
+  std::erase_if(words, [&](const auto& one) { return same_name(one, word.name.text); });
+  return words;
+}
+
 void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
   if (is_sensor_meant(to, word, names_)) return;
   Diagnostic& d = to.diagnostics
@@ -321,19 +334,16 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
                       .label(word.name.span);
   const std::size_t targets_known = robot_.actuators.size() + robot_.groups.size();
   if (!diagnostics_.may_search(to.actuator.words.size() + targets_known)) return;
+  if (plain_word(to.command.arguments.front()) == &word &&
+      names_.help_with_actuator(d, word.name)) {
+    d.message = "there is no actuator " + word.name.shown();
+    return;
+  }
   std::vector<std::string> words;
   for (const WordConfig& known : to.actuator.words)
     if (!known.text) words.push_back(known.name);
-  auto candidates = words;
-  const auto targets = names_.target_names();
-  candidates.insert(candidates.end(), targets.begin(), targets.end());
-  // Words of RSL that may come later in a line of commands.
-  for (const char* const keyword :
-       {"TO", "BY", "OVER", "AT", "FOR", "MARGIN", "TIMES", "WITH", "ELSE", "END"})
-    candidates.emplace_back(keyword);
-  // Not the word itself: it is a word of RSL, or another actuator, in the wrong place.
-  std::erase_if(candidates, [&](const auto& one) { return same_name(one, word.name.text); });
-  if (did_you_mean(d, word.name.span, word.name.text, candidates) &&
+  if (did_you_mean(d, word.name.span, word.name.text,
+                   meant_instead(words, names_.target_names(), word)) &&
       !may_be_preposition(to.command, word))
     doubt_keyword(d);
   names_.doubt_group(d, word.name.text);

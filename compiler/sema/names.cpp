@@ -173,6 +173,7 @@ void Names::report_unknown(const ast::Operand& operand) {
   if (helps_with_other_word(*this, operand, d)) return;
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
   if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
+  if (help_with_sensor(d, operand.name)) return;
   std::vector<std::string> candidates;
   for (const SensorConfig& sensor : robot_.sensors) {
     candidates.push_back(sensor.name.text);
@@ -307,6 +308,38 @@ std::vector<std::string> Names::target_names() const {
   for (const GroupConfig& group : robot_.groups)
     names.push_back(group.name.text);
   return names;
+}
+
+namespace {
+
+// Empty: none is that device, or more than one.
+template <typename Config>
+const Config* only_one_that_is(std::string_view device, const std::vector<Config>& all) {
+  const auto is_it = [&](const Config& one) {
+    return same_name(one.device, device) || same_name(one.part, device);
+  };
+  const auto found = std::ranges::find_if(all, is_it);
+  if (found == all.end() || std::any_of(found + 1, all.end(), is_it)) return nullptr;
+  return &*found;
+}
+
+template <typename Config>
+bool help_with_name(Diagnostic& d, const ast::Name& device, const std::vector<Config>& all) {
+  const Config* const meant = only_one_that_is(device.text, all);
+  if (meant == nullptr) return false;
+  d.helps("this robot calls it `" + meant->name.text + "`")
+      .fix(device.span, meant->name.text, Applicability::likely);
+  return true;
+}
+
+}  // namespace
+
+bool Names::help_with_sensor(Diagnostic& diagnostic, const ast::Name& device) const {
+  return help_with_name(diagnostic, device, robot_.sensors);
+}
+
+bool Names::help_with_actuator(Diagnostic& diagnostic, const ast::Name& device) const {
+  return help_with_name(diagnostic, device, robot_.actuators);
 }
 
 void Names::doubt_group(Diagnostic& diagnostic, std::string_view word) const {

@@ -132,6 +132,9 @@ public:
   [[nodiscard]] std::string channel_name(ChannelRef ref) const;  // "touch LEVEL"
 
   [[nodiscard]] std::vector<std::string> target_names() const;
+  // Suggests what the robot calls its only sensor or actuator of this device; false if there is none.
+  bool help_with_sensor(Diagnostic& diagnostic, const ast::Name& device) const;
+  bool help_with_actuator(Diagnostic& diagnostic, const ast::Name& device) const;
   // Makes the fix uncertain if it writes a group for a word that may mean one of its members: `arm` for `arms`.
   void doubt_group(Diagnostic& diagnostic, std::string_view word) const;
   [[nodiscard]] std::vector<std::string> verb_names() const;

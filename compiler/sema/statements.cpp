@@ -126,6 +126,7 @@ void Statements::add(const ast::Command& node, Span span, ir::Block& result) {
   }
   for (ir::Command& command : commands_.translate(node)) {
     if (commands_.lacks_content(command, span) || commands_.gives_too_much(node, command)) return;
+    commands_.note_no_amount(node, command);
     put(std::move(command), span, result);
   }
 }

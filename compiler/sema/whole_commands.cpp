@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "compiler/config/devices.hpp"
+#include "compiler/config/wiring.hpp"
 #include "compiler/sema/commands.hpp"
 
 namespace robosync::compiler {
@@ -117,6 +118,28 @@ void Commands::warn_of_a_sweep(const Recipient& to, const std::vector<Given>& gi
       .label(word.span)
       .helps("say how far: `" + std::string(word.text) + " BY 20deg`, or where to: `TO 20deg`")
       .helps("if you want a sweep, remove " + word.shown());
+}
+
+// `DRIVE base FORWARD`
+void Commands::note_no_amount(const ast::Command& node, const ir::Command& command) {
+  const ActuatorConfig& actuator = robot_.actuators[command.actuators.front()];
+  const VerbConfig* const verb = actuator.find_verb(command.verb.name);
+  if (verb == nullptr || verb->action == vm::Action::stop || actuator.find_verb("DRIVE") == nullptr)
+    return;
+  for (const vm::Param amount :
+       {vm::Param::to, vm::Param::by, vm::Param::over, vm::Param::for_, vm::Param::times})
+    if (is_given(command, amount)) return;
+  const bool turns = verb->has(vm::Param::by) &&
+                     param_unit(actuator, vm::Param::by, verb).dimension == vm::Dimension::angle;
+  diagnostics_
+      .report(Code::N0006,
+              "without an amount, " + actuator.name.shown() + " does this for a second")
+      .label(node.verb.span)
+      .helps(std::string("say how much: `") +
+             (turns                      ? "90deg"
+              : verb->has(vm::Param::by) ? "20cm"
+                                         : "FOR 2s") +
+             "`");
 }
 
 // A move to a position and a level that is held happen once. Drivers repeat only sweeps and blinks, which have no end.

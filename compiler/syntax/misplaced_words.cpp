@@ -417,10 +417,17 @@ private:
     if (!(by || begins_with(Kinds::SET)) || stop_ != statement_ + 2 || !is(stop_, Kinds::NAME) ||
         !is(stop_ + 1, by ? Kinds::BY : Kinds::TO))
       return std::nullopt;
-    report(Code::E0001, "`" + text(stop_ - 1, stop_ + 1) + "` is two words, but a variable is one",
-           span(stop_ - 1, stop_ + 1))
-        .helps("write a variable as one word, with `_`; a sensor's value cannot be changed")
-        .helps("`SET`, `RAISE` and `LOWER` change a REMEMBER, a FEELING or a STATE");
+    const Span both = span(stop_ - 1, stop_ + 1);
+    Diagnostic& d =
+        report(Code::E0001,
+               "`" + text(stop_ - 1, stop_ + 1) + "` is two words, but a variable is one", both);
+    const std::string joined = std::string(text(stop_ - 1)).append("_").append(text(stop_));
+    if (behind_declaration("REMEMBER", joined) || behind_declaration("FEELING", joined) ||
+        behind_declaration("STATE", joined))
+      d.helps("write `" + joined + "`").fix(both, joined);
+    else
+      d.helps("write a variable as one word, with `_`; a sensor's value cannot be changed")
+          .helps("`SET`, `RAISE` and `LOWER` change a REMEMBER, a FEELING or a STATE");
     return change(stop_, 1);
   }
 

@@ -11,7 +11,7 @@
 
 namespace robosync::tool::lsp {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // The editor's capabilities from `initialize`.
 struct Client {

@@ -1,4 +1,4 @@
-// rsc new FOLDER [--template NAME | --module]
+// rsc new FOLDER [--template NAME] [--board NAME] | --module
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -11,8 +11,10 @@
 
 #include <fmt/format.h>
 
+#include "compiler/config/boards.hpp"
 #include "rsc/escaped.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/fitted_template.hpp"
 #include "rsc/modules/texts.hpp"
 #include "rsc/output.hpp"
 #include "rsc/templates.hpp"
@@ -26,6 +28,7 @@ namespace fs = std::filesystem;
 struct NewOptions {
   std::string folder;
   std::optional<std::size_t> robot;  // in templates()
+  std::string board;
   bool module = false;
 };
 
@@ -34,10 +37,10 @@ struct NewFile {
 };
 using NewFiles = std::vector<NewFile>;
 
-NewFiles files_of(const Template& robot) {
+NewFiles files_of(const Template& robot, const std::string& board) {
   NewFiles files;
   for (const TemplateFile& file : robot.files)
-    files.push_back({std::string(file.name), std::string(file.text)});
+    files.push_back({std::string(file.name), text_on(board, file)});
   return files;
 }
 
@@ -109,9 +112,16 @@ void report(const std::string& folder, const Template& robot) {
       robot.scenario);
 }
 
-void make_robot(const NewOptions& options) {
+const Template& template_of(const NewOptions& options) {
+  if (!options.robot && !options.board.empty()) return template_for(options.board);
   const Template& robot = templates()[options.robot.value_or(0)];
-  const NewFiles files = files_of(robot);
+  if (!options.board.empty()) refuse_misfit(options.board, robot);
+  return robot;
+}
+
+void make_robot(const NewOptions& options) {
+  const Template& robot = template_of(options);
+  const NewFiles files = files_of(robot, options.board);
   refuse_what_is_there(options.folder, files);
   write_files(options.folder, files);
   report(options.folder, robot);
@@ -168,8 +178,9 @@ void report_module(const std::string& folder, const std::string& name) {
 }
 
 void make_module(const NewOptions& options) {
-  if (options.robot)
-    throw Failure(Exit::usage, "a module comes with its own robot: give --module or --template");
+  if (options.robot || !options.board.empty())
+    throw Failure(Exit::usage,
+                  "a module comes with its own robot: give --module, or --template and --board");
   const std::string name = module_name(options.folder);
   const NewFiles files = files_of_module(name);
   refuse_what_is_there(options.folder, files);
@@ -196,6 +207,11 @@ void add_new(Options& options) {
   options.choice(
       "--template", names, [asked](std::size_t index) { asked->robot = index; },
       list_of_templates());
+  const auto known = compiler::board_names();
+  options.choice(
+      "--board", {known.begin(), known.end()},
+      [asked, known](std::size_t index) { asked->board = known[index]; },
+      "the robot's board; without --template, a robot for it");
   options.flag("--module", asked->module,
                "a robot with its own algorithm module, named after the folder");
   options.runs([asked] { asked->module ? make_module(*asked) : make_robot(*asked); });

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "compiler/config/boards.hpp"
 #include "rsc/templates.hpp"
 #include "tests/rsc/process.hpp"
 
@@ -39,6 +40,68 @@ TEST_CASE("without a template it is the first one") {
   CHECK(test::rsc({"new", folder.path("one")}).exit == 0);
   CHECK(test::rsc({"new", folder.path("two"), "--template", "companion"}).exit == 0);
   CHECK(folder.read("one/robot.rsl") == folder.read("two/robot.rsl"));
+}
+
+namespace {
+
+// Is what `rsc new` made there right, and for this board?
+void check_made(const Folder& folder, const std::string& place, std::string_view board) {
+  const std::string program = folder.path(place + "/robot.rsl");
+  const Outcome checked = test::rsc({"check", program, "--format", "json"});
+  CAPTURE(checked.out);
+  CHECK(checked.exit == 0);
+  CHECK(json::parse(checked.out).at("warnings") == 0);
+  CHECK(test::rsc({"test", program}).exit == 0);
+  CHECK(json::parse(folder.read(place + "/robot.json")).at("board") == board);
+}
+
+}  // namespace
+
+TEST_CASE("with a board, each template fits it, or is refused with those that do") {
+  std::size_t refused = 0;
+  for (const std::string_view board : compiler::board_names()) {
+    const Folder folder;
+    std::string fitting = "; these do: ", last;
+    for (const tool::Template& robot : tool::templates()) {
+      const std::string name(robot.name);
+      CAPTURE(board, name);
+      const Outcome made =
+          test::rsc({"new", folder.path(name), "--template", name, "--board", std::string(board)});
+      if (made.exit == 0) {
+        check_made(folder, name, board);
+        fitting += (last.empty() ? "" : ", ") + name;
+        last = name;
+        continue;
+      }
+      CHECK(made.exit == 2);
+      CHECK_THAT(made.err, Contains("the template " + name + " does not fit the board " +
+                                    std::string(board) + ": "));
+      CHECK_FALSE(folder.has(name));
+      ++refused;
+    }
+    const Outcome none =
+        test::rsc({"new", folder.path("x"), "--template", "puppet", "--board", std::string(board)});
+    if (none.exit != 0) CHECK_THAT(none.err, Catch::EndsWith(fitting + "\n"));
+  }
+  CHECK(refused > 0);
+}
+
+TEST_CASE("a board without a template gets a robot of its own, or else the first that fits") {
+  const Folder folder;
+  for (const std::string_view board : compiler::board_names()) {
+    const std::string place(board);
+    CAPTURE(board);
+    CHECK(test::rsc({"new", folder.path(place), "--board", place}).exit == 0);
+    check_made(folder, place, board);
+  }
+  CHECK(test::rsc({"new", folder.path("m"), "--template", "microbit"}).exit == 0);
+  for (const char* const file : {"/robot.rsl", "/robot.json"})
+    CHECK(folder.read(std::string("microbit-v2") + file) == folder.read(std::string("m") + file));
+  CHECK(folder.read("m/robot.json").find("pin") == std::string::npos);  // nothing is wired
+  const Outcome unknown = test::rsc({"new", folder.path("u"), "--board", "microbit"});
+  CHECK(unknown.exit == 2);
+  CHECK_THAT(unknown.err, Contains("microbit-v2"));
+  CHECK(test::rsc({"new", folder.path("mod"), "--module", "--board", "microbit-v2"}).exit == 2);
 }
 
 TEST_CASE("a file that is there stays as it is, and no other is written") {

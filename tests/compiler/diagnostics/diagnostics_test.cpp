@@ -45,7 +45,9 @@ TEST_CASE("labels in two files", "[render]") {
       .label({json, 12, 16}, "the sensor gives millimetres", false)
       .label({rsl, 31, 34}, "newton (force)")
       .helps("did you mean `20mm`, `20cm`?")
-      .fix({rsl, 31, 34}, "20mm");
+      .fix({rsl, 31, 34}, "20mm")
+      .fix({rsl, 31, 34}, "20cm", Applicability::likely)
+      .fix({rsl, 31, 34}, "…", Applicability::placeholder);
   CHECK(render_human(diagnostics, sources, false) ==
         "error[E0301]: this compares a distance with a weight\n"
         "  --> robot.rsl:4:29\n"
@@ -73,6 +75,9 @@ TEST_CASE("labels in two files", "[render]") {
   CHECK(entry["help"].at(0) == "did you mean `20mm`, `20cm`?");
   CHECK(entry["fixes"].at(0)["replacement"] == "20mm");
   CHECK(entry["fixes"].at(0)["applicability"] == "certain");
+  CHECK(entry["fixes"].at(1)["replacement"] == "20cm");
+  CHECK(entry["fixes"].at(1)["applicability"] == "likely");
+  CHECK(entry["fixes"].at(2)["applicability"] == "placeholder");
 }
 
 TEST_CASE("JSON of sources that are not UTF-8", "[render]") {

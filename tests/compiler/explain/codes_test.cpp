@@ -9,6 +9,7 @@
 #include "compiler/compiler.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/algorithm_modules.hpp"
+#include "rsc/judge.hpp"
 
 using namespace robosync::compiler;
 using Catch::Contains;
@@ -28,7 +29,8 @@ constexpr const char* kRobot = R"({
     {"name": "right_arm", "type": "PWM", "pin": 11, "device": "servo", "range": ["0deg", "120deg"]},
     {"name": "sound", "type": "VIRTUAL", "device": "speaker",
      "sounds": ["greeting.wav", "warning.wav"]},
-    {"name": "face", "type": "VIRTUAL", "device": "face"}
+    {"name": "face", "type": "VIRTUAL", "device": "face"},
+    {"name": "base", "type": "VIRTUAL", "device": "drive"}
   ],
   "groups": {"arms": ["left_arm", "right_arm"]}
 })";
@@ -43,9 +45,10 @@ struct Outcome {
 // RSL with a robot that has some of everything; or a robot.json with a program for any.
 Outcome compile_example(std::string_view example) {
   const bool json = example.starts_with('{');
-  const Result result = compile({"robot.rsl", json ? kProgram : std::string(example) + "\n"},
-                                {"robot.json", json ? std::string(example) : kRobot},
-                                {.algorithms = robosync::tool::algorithm_modules()});
+  Result result = compile({"robot.rsl", json ? kProgram : std::string(example) + "\n"},
+                          {"robot.json", json ? std::string(example) : kRobot},
+                          {.algorithms = robosync::tool::algorithm_modules()});
+  robosync::tool::judge(result, robosync::tool::Judged::by_time);
   Outcome outcome{
       {}, result.diagnostics.errors(), render_human(result.diagnostics, result.sources, false)};
   for (const Diagnostic& diagnostic : result.diagnostics.all())

@@ -277,6 +277,7 @@ TEST_CASE("a fix is certain only where nothing else can be meant") {
        {"touch LEVEL > 3" + rest,                         // WHEN or WHILE
         " greetings\nWHEN touch LEVEL > 3" + rest,        // USE
         std::string("LIST words: \"one\", , \"two\"\n"),  // a text is missing
+        std::string("REMEMBER joy = 0\nAT START DO\n  RAISE my joy BY 1\nEND\n"),
         std::string("REMEMBER n = 0\nAT START DO\n  SET n TO n // 2\nEND\n"),
         std::string("AT START DO\n  SHOW face tick\nEND\n"),  // PICK
         std::string("AT START DO\n  MOVE the head TO 30deg\nEND\n"),
@@ -303,8 +304,16 @@ TEST_CASE("a fix is certain only where nothing else can be meant") {
     CHECK(result.diagnostics.errors() == 1);
     CHECK(fixed(from_json, result, kConfigurationFile) == from_json);
   }
-  const std::string twice = "WHEN WHEN touch LEVEL > 3" + rest;
-  CHECK(compiled(fixed(twice, compiled(twice, robot)), robot).diagnostics.errors() == 0);
+  for (const std::string& wrong :
+       {"WHEN WHEN touch LEVEL > 3" + rest,
+        std::string("REMEMBER my_joy = 0\nAT START DO\n  RAISE my joy BY 1\nEND\n"),
+        std::string("FEELING my_joy FROM 0 TO 9 START 5\nAT START DO\n  LOWER My Joy BY 1\nEND\n"),
+        std::string("STATE my_mood: calm, sad\nAT START DO\n  SET my mood TO sad\nEND\n")}) {
+    CAPTURE(wrong);
+    const Result result = compiled(wrong, robot);
+    CHECK(result.diagnostics.errors() == 1);
+    CHECK(compiled(fixed(wrong, result), robot).diagnostics.errors() == 0);
+  }
 }
 
 namespace {

@@ -208,6 +208,16 @@ TEST_CASE("a fix that is not certain is not preferred, and not part of all that 
   CHECK(offered[0].at("kind") == "quickfix");
 }
 
+TEST_CASE("a likely fix is offered as it is, but not among those that are certain") {
+  Editor editor;
+  editor.open("robot.rsl", "WHEN touch LEVEL > .3\nDO\n  LOG \"a\"\nEND\n");
+  const Json offered = actions(editor, "robot.rsl", range(0, 19, 19));
+  REQUIRE(offered.size() == 1);
+  CHECK(offered[0].at("title") == "Replace `.3` with `0.3`");
+  CHECK(offered[0].at("kind") == "quickfix");
+  CHECK(offered[0].at("isPreferred") == false);
+}
+
 TEST_CASE("a module that has what is missing is offered") {
   Editor editor;
   editor.open("robot.rsl", "% 🤖\nWHEN touch LEVEL > 3 DO PERFORM wave\nEND\n");
