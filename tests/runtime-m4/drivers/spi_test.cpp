@@ -308,14 +308,16 @@ TEST_CASE("an SPI bus has its pins while a program has a part on it, and no puls
   const char* const kArms = R"({"actuators": [{"name": "arm", "device": "servo", "pin": 20},
                                               {"name": "hand", "device": "servo", "pin": 23}]})";
   const std::string part =
-      R"({"sensors": [{"name": "knob", "device": "mcp3008", "pin": 37,
-          "channels": {"LEVEL": {"input": 5}}}], "actuators": [{"name": "claw", "type": "VIRTUAL"}]})";
+      R"({"sensors": [{"name": "knob", "device": "mcp3008", "pin": 37, "channels": {"LEVEL": {"input": 5}}},
+                      {"name": "dial", "type": "I2C", "address": "0x19", "channels": {"LEVEL": {"input": 5}}}],
+          "actuators": [{"name": "claw", "type": "VIRTUAL"}]})";
+  const std::string both = std::string(kKnob) + "WHEN dial LEVEL > 3 DO LOG \"dial\" END\n";
   REQUIRE(rig.activate(test::compile(kMoves, kArms)).ok());
   rig.run(100);
   CHECK(rig.board.pulse(20) != 0);
   CHECK(rig.board.pulse(23) != 0);
   CHECK(rig.board.opened.empty());
-  REQUIRE(rig.activate(test::compile(kKnob, part)).ok());
+  REQUIRE(rig.activate(test::compile(both, part)).ok());
   CHECK(rig.board.opened == std::vector<std::pair<std::uint8_t, std::uint16_t>>{{0, 37}});
   CHECK(changes == 1);
   REQUIRE(rig.activate(test::compile(kMoves, kArms)).ok());
