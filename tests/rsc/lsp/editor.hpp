@@ -14,7 +14,7 @@
 
 namespace robosync::test {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 inline constexpr const char* kEditorsRobot = R"({
   "sensors": [
