@@ -226,7 +226,7 @@ void AskedBus<Master>::end(State how) {
   if (ended.shape.read == 0 && !ended.ahead) ended.free();
   if (waiting_ == 0) return;
   --waiting_;
-  begin(requests_.take_first());
+  begin(requests_.first_waiting());
 }
 
 template <typename Master>

@@ -85,10 +85,11 @@ BusRequest* BusRequests::place(Word shape, Word head, const std::byte* out) {
   return found;
 }
 
-BusRequest& BusRequests::take_first() {
-  BusRequest* first = nullptr;
+BusRequest& BusRequests::first_waiting() {
+  BusRequest* first = requests_.data();
   for (BusRequest& request : used())
-    if (request.state == State::waits && (first == nullptr || request.turn < first->turn))
+    if (request.state == State::waits &&
+        (first->state != State::waits || request.turn < first->turn))
       first = &request;
   return *first;
 }

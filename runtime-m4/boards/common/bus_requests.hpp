@@ -86,7 +86,7 @@ public:
   // Makes it, if there is room.
   [[gnu::noinline]] BusRequest* place(Word shape, Word head, const std::byte* out);
   // The one that waits and was asked first. There is one.
-  BusRequest& take_first();
+  BusRequest& first_waiting();
   void fail_waiting();
 
 private:
