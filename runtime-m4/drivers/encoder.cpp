@@ -25,10 +25,16 @@ bool encoder::read(boards::Board& /*board*/, const vm::Sensor& /*sensor*/,
 }
 
 void Encoders::take(boards::Board& board, const vm::Sensor& sensor, unsigned number,
-                    std::uint32_t now, Wheel& wheel) {
+                    kernel::Time time, Wheel& wheel) {
+  const auto now = static_cast<std::uint32_t>(time);
   boards::Turned turned{};
   const unsigned most = policy::most_edges(sensor.period_ms);
   wheel.known = board.take_edges(number, sensor.address, sensor.bus, most, turned);
+  const policy::VirtualWheels* const wheels = board.wheels();
+  if (wheels != nullptr && wheels->is_on(number)) {
+    turned.edges += wheels->edges(number, now);
+    turned.ago = wheels->ago(number, now);
+  }
   if (turned.begun)  // it stands
     wheel = {.last = now - static_cast<std::uint32_t>(kStandsUs), .known = wheel.known};
   const std::uint32_t last = now - turned.ago;
@@ -50,7 +56,7 @@ void Encoders::take(boards::Board& board, const vm::Sensor& sensor, unsigned num
                                         kernel::Time now, std::int32_t& raw) {
   if (number >= wheels_.size()) return false;
   Wheel& wheel = wheels_[number];
-  if (is_first) take(board, sensor, number, static_cast<std::uint32_t>(now), wheel);
+  if (is_first) take(board, sensor, number, now, wheel);
   if (!wheel.known || input > 1) return false;
   raw = input == 0 ? wheel.edges : wheel.speed;
   return true;

@@ -32,7 +32,7 @@ private:
     bool known = false;
   };
   static void take(boards::Board& board, const vm::Sensor& sensor, unsigned number,
-                   std::uint32_t now, Wheel& wheel);
+                   kernel::Time time, Wheel& wheel);
 
   std::array<Wheel, vm::kMaxEncoders> wheels_{};
 };

@@ -111,6 +111,8 @@ void OutputGuard::switch_off(const vm::Image* next) {
   }
   lights_ = speaker_ = on_chips_ = drive_ = 0;
   drive_parameters_ = nullptr;
+  counts_wheels_ = false;
+  if (policy::VirtualWheels* const wheels = board_.wheels()) wheels->end_all();
 }
 
 void OutputGuard::end(const Slot& slot, const vm::Image* next) {
@@ -238,6 +240,7 @@ bool OutputGuard::own_wheels(unsigned actuator, const vm::Image& image) {
   right_wheel_ = slot_of(vm::motor_of(drive, parameters, vm::Side::right));
   drive_ = bit(actuator);
   drive_parameters_ = image.constants.data() + drive.pin;
+  own_encoders(image, drive, parameters);
   apart_ |= bit(actuator);
   return true;
 }
@@ -351,6 +354,9 @@ void OutputGuard::put_wheels(unsigned actuator, kernel::Time now) {
     if (wheel->pulse != wheel->target) lagging_ |= bit(actuator);
     board_.pwm_write(wheel->pin, wheel->pulse);
   }
+  if (!counts_wheels_) return;
+  turn_virtual_wheel(slots_[actuator], 0, static_cast<std::uint32_t>(now));
+  turn_virtual_wheel(right_wheel_, 1, static_cast<std::uint32_t>(now));
 }
 
 void OutputGuard::go_on(kernel::Time now) {

@@ -5,9 +5,10 @@ import sys
 
 from changes import Mutant, Suite, run
 
-TESTS = "[#guard_test],[#differential_drive_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
+TESTS = "[#guard_test],[#differential_drive_test],[#counted_drive_test],[#travel_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 READS = "runtime-m4/guard/read_pins.cpp"
+TRAVEL, DRIVE = "runtime-m4/policy/travel.hpp", "runtime-m4/drivers/differential_drive.cpp"
 MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
 
@@ -51,6 +52,14 @@ MUTANTS = (
            "static_cast<std::uint16_t>(second ? 0 - length : length)"),
     Mutant("no limit of the rise of a wheel", GUARD, "rise == 0 ? wheel->target", "true ? wheel->target"),
     Mutant("a drive is owned on pins that the board does not drive", GUARD, "if (!policy::can_drive(drive, parameters, board_.pins())) return false;", ""),
+    Mutant("a wheel that gives no edge is driven on", TRAVEL, "if (now_ms - wheel.made_at > patience_ms(wheel)) return State::blocked;", ""),
+    Mutant("a wheel whose edges are lost is driven on", TRAVEL, "if (counted[side].losses != wheel.begin.losses) return State::blocked;", ""),
+    Mutant("a wheel that rocks counts as one that goes", TRAVEL, "  if (made <= wheel.made) return;\n", "  if (made == wheel.made) return;\n"),
+    Mutant("a wheel that has arrived is driven on", TRAVEL, "if (wheel.made >= wheel.goal) return 0;", ""),
+    Mutant("the wheel that is behind gets less", TRAVEL, "way_of(wheel) - way_of(other)", "way_of(other) - way_of(wheel)"),
+    Mutant("what waits behind a blocked movement is begun", CONTROL, "  const auto lock = kernel_.lock();\n  pool_.clear(unit.queue);\n  return kernel::kForever;",
+           "  return kernel::kForever;"),
+    Mutant("a blocked drive runs on", DRIVE, "  stop(device, now);\n  return state == State::blocked", "  return state == State::blocked"),
     Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n    if (is_on_panel", "    if (is_on_panel"),
     Mutant("a player is told twice at once", "runtime-m4/guard/output_guard.hpp", "- told) < gap;", "- told) == 0xFFFF;"),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
