@@ -12,8 +12,8 @@ import unittest
 from collections import Counter
 from pathlib import Path
 
+import paths  # first: it says where the others are
 import on_board
-import paths
 import rsc
 import stimuli
 from board import FAST, FIRMWARE, REAL_TIME, Board
