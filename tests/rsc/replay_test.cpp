@@ -47,6 +47,30 @@ struct Recorded : RobotFolder {
   }
 };
 
+// A robot with two knobs: the left one is turned up at 1 s, the right one at 2 s.
+struct TwoKnobs : test::Folder {
+  // What `rsc run` shows of the program. The run is recorded.
+  [[nodiscard]] std::string run(const std::string& rsl) const {
+    (void)write("robot.json", R"({
+      "sensors": [{"name": "left", "type": "ADC", "pin": 44, "device": "analog"},
+                  {"name": "right", "type": "ADC", "pin": 45, "device": "analog"}],
+      "actuators": [{"name": "arm", "type": "PWM", "pin": 4, "device": "servo"}]})");
+    const std::string scenario = write("visit.json", R"({"duration": "4s", "stimuli": [
+      {"at": "0s", "sensor": "left", "value": "1%"}, {"at": "0s", "sensor": "right", "value": "1%"},
+      {"at": "1s", "sensor": "left", "value": "90%"}, {"at": "2s", "sensor": "right", "value": "90%"}]})");
+    const Outcome outcome = test::rsc({"run", write("robot.rsl", rsl), "--scenario", scenario,
+                                       "--all", "--record", path("r.jsonl")});
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit == 0);
+    return outcome.out;
+  }
+  void expect_same_replay() const {
+    const Outcome replay = test::rsc({"replay", path("r.jsonl")});
+    CHECK_THAT(replay.out, Contains("the same as recorded"));
+    CHECK(replay.exit == 0);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("every example's run is replayed to the same") {
@@ -102,12 +126,8 @@ END
 }
 
 TEST_CASE("a reading that came after a response of its millisecond had gone on is held back") {
-  const test::Folder folder;
-  (void)folder.write("robot.json", R"({
-    "sensors": [{"name": "left", "type": "ADC", "pin": 44, "device": "analog"},
-                {"name": "right", "type": "ADC", "pin": 45, "device": "analog"}],
-    "actuators": [{"name": "arm", "type": "PWM", "pin": 4, "device": "servo"}]})");
-  const std::string program = folder.write("robot.rsl", R"(
+  const TwoKnobs robot;
+  const std::string told = robot.run(R"(
 BEHAVIOR low PRIORITY 10
   WHEN left LEVEL > 50% DO
     MOVE arm TO 10deg
@@ -119,28 +139,16 @@ BEHAVIOR high PRIORITY 20
   WHEN right LEVEL > 50% DO MOVE arm TO 90deg END
 END
 )");
-  const std::string scenario = folder.write("visit.json", R"({"duration": "3s", "stimuli": [
-    {"at": "0s", "sensor": "left", "value": "1%"}, {"at": "0s", "sensor": "right", "value": "1%"},
-    {"at": "1s", "sensor": "left", "value": "90%"}, {"at": "2s", "sensor": "right", "value": "90%"}]})");
-  const Outcome run = test::rsc(
-      {"run", program, "--scenario", scenario, "--all", "--record", folder.path("r.jsonl")});
-  CAPTURE(run.err);
-  REQUIRE_THAT(run.out, Contains("2.000 s  low, rule at line 3 goes on"));
-  REQUIRE_THAT(run.out, Contains("2.000 s  high, rule at line 10 triggers"));
-  const Outcome replay = test::rsc({"replay", folder.path("r.jsonl")});
-  CHECK_THAT(replay.out, Contains("the same as recorded"));
-  CHECK(replay.exit == 0);
+  REQUIRE_THAT(told, Contains("2.000 s  low, rule at line 3 goes on"));
+  REQUIRE_THAT(told, Contains("2.000 s  high, rule at line 10 triggers"));
+  robot.expect_same_replay();
 }
 
 TEST_CASE(
     "a reading is held back behind no more than the step before it, though a WHILE begins its next "
     "round") {
-  const test::Folder folder;
-  (void)folder.write("robot.json", R"({
-    "sensors": [{"name": "left", "type": "ADC", "pin": 44, "device": "analog"},
-                {"name": "right", "type": "ADC", "pin": 45, "device": "analog"}],
-    "actuators": [{"name": "arm", "type": "PWM", "pin": 4, "device": "servo"}]})");
-  const std::string program = folder.write("robot.rsl", R"(BEHAVIOR low PRIORITY 10
+  const TwoKnobs robot;
+  const std::string told = robot.run(R"(BEHAVIOR low PRIORITY 10
   WHILE left LEVEL > 50% DO
     MOVE arm TO 10deg
     WAIT 1s
@@ -150,17 +158,9 @@ BEHAVIOR high PRIORITY 20
   WHEN right LEVEL > 50% DO MOVE arm TO 90deg END
 END
 )");
-  const std::string scenario = folder.write("visit.json", R"({"duration": "4s", "stimuli": [
-    {"at": "0s", "sensor": "left", "value": "1%"}, {"at": "0s", "sensor": "right", "value": "1%"},
-    {"at": "1s", "sensor": "left", "value": "90%"}, {"at": "2s", "sensor": "right", "value": "90%"}]})");
-  const Outcome run = test::rsc(
-      {"run", program, "--scenario", scenario, "--all", "--record", folder.path("r.jsonl")});
-  CAPTURE(run.err);
-  REQUIRE_THAT(run.out, Contains("2.000 s  low, rule at line 2 is finished\n"
-                                 "   2.000 s  right LEVEL = 90%"));
-  const Outcome replay = test::rsc({"replay", folder.path("r.jsonl")});
-  CHECK_THAT(replay.out, Contains("the same as recorded"));
-  CHECK(replay.exit == 0);
+  REQUIRE_THAT(told, Contains("2.000 s  low, rule at line 2 is finished\n"
+                              "   2.000 s  right LEVEL = 90%"));
+  robot.expect_same_replay();
 }
 
 TEST_CASE("replay says where a recording and its replay differ first") {
