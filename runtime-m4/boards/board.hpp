@@ -77,8 +77,8 @@ public:
   // False: the board already knows that the device does not acknowledge.
   virtual bool i2c_select(std::uint8_t bus, std::uint8_t address,
                           std::span<const std::byte> page) = 0;
-  // One SPI transfer while the part's select pin (pins()) is low, at 1 MHz, in mode 0: writes `out`, then reads `in`; together at
-  // most vm::kMostSpiBytes. False if it does not end, or there is no such bus. SPI has no acknowledge: without a part, `in` is
+  // One SPI transfer while the part's select pin (pins()) is low, in mode 0, at the board's rate, 1 MHz at most: writes `out`, then
+  // reads `in`; together at most vm::kMostSpiBytes. False if it does not end, or there is no such bus. SPI has no acknowledge: without a part, `in` is
   // whatever the line shows.
   virtual bool spi_transfer(std::uint8_t /*bus*/, std::uint16_t /*select*/,
                             std::span<const std::byte> /*out*/, std::span<std::byte> /*in*/) {
