@@ -81,6 +81,17 @@ TEST_CASE("a word alone has its own limit only") {
   CHECK(allowed_distances({}).empty());
 }
 
+TEST_CASE("the more the samples of a word differ, the more may something differ from it") {
+  std::size_t between = 0;
+  for (int spread = 0; spread <= 40; ++spread) {
+    const Allowed allowed = allowed_distances({word(2, 12, spread / 10.0)}).front();
+    INFO(spread << ": own " << allowed.own);
+    CHECK(allowed.most == std::clamp(4 * allowed.own, Distance{330}, Distance{550}));
+    between += allowed.most > 330 && allowed.most < 550;
+  }
+  CHECK(between > 0);
+}
+
 TEST_CASE(
     "words sound alike that are less than 45 % apart, or than twice what a word's own samples "
     "are") {
