@@ -34,7 +34,7 @@ target_sources(robosync_runtime PRIVATE
   layers/workspace.cpp
   guard/displays.cpp
   guard/output_guard.cpp
-  guard/read_pins.cpp
+  guard/sensor_pins.cpp
   safety/rule_key.cpp
   safety/safety_rules.cpp
   safety/monitor.cpp

@@ -7,7 +7,7 @@ from changes import Mutant, Suite, run
 
 TESTS = "[#guard_test],[#differential_drive_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
-READS = "runtime-m4/guard/read_pins.cpp"
+READS = "runtime-m4/guard/sensor_pins.cpp"
 MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
 

@@ -53,7 +53,7 @@ private:
   using Request = BusRequest;
   using Word = Request::Word;
   using Shape = Request::Shape;
-  using State = Request::State;
+  using State = RequestState;
 
   // Not inlined: in one function they need more registers than there are.
   [[gnu::noinline]] void ask(Request& request, bool ahead);

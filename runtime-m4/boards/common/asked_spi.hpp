@@ -42,17 +42,16 @@ public:
 private:
   static constexpr std::size_t kMostRead = vm::kMostSpiBytes - 1;
 
+  using State = RequestState;
   struct Request {
-    enum class State : std::uint8_t { waits, runs, done, failed };
     State state : 4;
     std::uint8_t read : 4;
     std::uint8_t select, command;
     std::array<std::byte, kMostRead> in;
 
-    bool under_way() const { return state == State::waits || state == State::runs; }
+    bool under_way() const { return is_under_way(state); }
   };
   static_assert(sizeof(Request) == 5, "a board's RAM outside of its arena is small");
-  using State = typename Request::State;
 
   Request* find(std::uint8_t select, std::uint8_t command, std::size_t read);
   void ask(std::uint8_t select, std::uint8_t command, std::size_t read);

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/transfer.hpp"
 
 namespace robosync::boards {
 
@@ -37,7 +38,7 @@ struct alignas(std::uint32_t) BusRequest {
   static constexpr unsigned kRead = 4;  // in Shape::first
   static_assert(kMostSelected < kRead);
 
-  enum class State : std::uint8_t { waits, runs, done, failed };
+  using State = RequestState;
 
   Shape shape{};
   std::uint32_t turn = 0;
@@ -50,7 +51,7 @@ struct alignas(std::uint32_t) BusRequest {
   std::uint8_t follower = 0;  // the request that was looked for behind this one the last time
 
   std::byte* in() { return &bytes[kOut + shape.written]; }
-  bool under_way() const { return state == State::waits || state == State::runs; }
+  bool under_way() const { return is_under_way(state); }
   bool is_free() const { return shape.written == 0; }
   void free() {
     state = State::failed;
@@ -76,7 +77,7 @@ static_assert(BusRequest::kOut < sizeof(BusRequest::Word) &&
 class BusRequests {
 public:
   using Word = BusRequest::Word;
-  using State = BusRequest::State;
+  using State = RequestState;
   // More than fit into the time (policy::kBusWindowUs).
   static constexpr std::size_t kMost = 20;
 
