@@ -72,6 +72,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/analyze.cpp
   sema/behaviors.cpp
   sema/commands.cpp
+  sema/condition_lints.cpp
   sema/conditions.cpp
   sema/defines.cpp
   sema/expressions.cpp
@@ -80,6 +81,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/limits.cpp
   sema/lints.cpp
   sema/lists.cpp
+  sema/misread.cpp
   sema/motions.cpp
   sema/number_lists.cpp
   sema/perform.cpp
@@ -87,8 +89,10 @@ target_sources(robosync_compiler_small PRIVATE
   sema/statements.cpp
   sema/texts.cpp
   sema/timers.cpp
+  sema/unknown_verbs.cpp
   sema/variables.cpp
   sema/waiting_commands.cpp
+  sema/whole_commands.cpp
   units/units.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE
@@ -98,16 +102,6 @@ target_sources(robosync_compiler PRIVATE
   ir/expression.cpp
   ir/fact.cpp
   ir/program.cpp
-  sema/misread.cpp
-  sema/unknown_verbs.cpp
-  sema/whole_commands.cpp
-  sema/condition_lints.cpp
   sema/names.cpp
   sema/quantities.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# As in the front end, the code that words diagnostics is optimised for size.
-if(NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(sema/condition_lints.cpp sema/misread.cpp sema/unknown_verbs.cpp
-    sema/whole_commands.cpp
-    PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
-endif()

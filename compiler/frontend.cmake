@@ -47,40 +47,35 @@ target_sources(robosync_compiler PRIVATE
   diagnostics/diagnostic.cpp
   diagnostics/nearest.cpp
   diagnostics/plain_text.cpp
-  diagnostics/render_human.cpp
-  diagnostics/render_json.cpp
-  diagnostics/sarif.cpp
-  diagnostics/snippet.cpp
   syntax/blocks.cpp
   syntax/builder.cpp
   syntax/edit.cpp
-  syntax/examples.cpp
-  syntax/foreign_habits.cpp
-  syntax/format.cpp
-  syntax/habits.cpp
   syntax/heads.cpp
   syntax/keywords.cpp
   syntax/layout.cpp
-  syntax/lexer_habits.cpp
   syntax/lexer_state.cpp
-  syntax/lost_heads.cpp
-  syntax/misplaced_words.cpp
   syntax/missing.cpp
   syntax/parser.cpp
   syntax/reader.cpp
   syntax/repair.cpp
-  syntax/robot_lines.cpp
-  syntax/wrong_forms.cpp
-  syntax/wording.cpp
   units/foreign_units.cpp)
 # Public for the tests, which look at tokens. SYSTEM silences warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
-# The code that words a mistake is long, runs seldom, and prints at most 20 messages: size matters more than speed there.
-if(NOT ROBOSYNC_SANITIZE)
-  set_source_files_properties(
-    diagnostics/render_human.cpp diagnostics/render_json.cpp diagnostics/sarif.cpp diagnostics/snippet.cpp
-    syntax/examples.cpp syntax/foreign_habits.cpp syntax/format.cpp syntax/habits.cpp syntax/lexer_habits.cpp syntax/lost_heads.cpp
-    syntax/misplaced_words.cpp syntax/robot_lines.cpp syntax/wording.cpp syntax/wrong_forms.cpp
-    PROPERTIES COMPILE_OPTIONS -Os SKIP_UNITY_BUILD_INCLUSION ON)
-endif()
+# The code that words a mistake is long, runs seldom, and prints at most 20 messages.
+target_sources(robosync_compiler_small PRIVATE
+  source/json.cpp
+  diagnostics/render_human.cpp
+  diagnostics/render_json.cpp
+  diagnostics/sarif.cpp
+  diagnostics/snippet.cpp
+  syntax/examples.cpp
+  syntax/foreign_habits.cpp
+  syntax/format.cpp
+  syntax/habits.cpp
+  syntax/lexer_habits.cpp
+  syntax/lost_heads.cpp
+  syntax/misplaced_words.cpp
+  syntax/robot_lines.cpp
+  syntax/wording.cpp
+  syntax/wrong_forms.cpp)

@@ -12,14 +12,13 @@
 #include "compiler/config/names.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
+#include "rsc/json.hpp"
 #include "rsc/output.hpp"
 #include "rsc/quantity.hpp"
 #include "vm/identity.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kKey = "kept";
 constexpr std::size_t kNotInImage = static_cast<std::size_t>(-1);
@@ -30,7 +29,7 @@ constexpr std::size_t kNotInImage = static_cast<std::size_t>(-1);
 
 // The entries of a file written by rsc, or by hand.
 Json entries_of(const std::string& text, const std::string& file) {
-  const Json whole = Json::parse(text, nullptr, false);
+  const Json whole = read_json(text);
   const bool good =
       whole.is_object() && whole.size() == 1 && whole.contains(kKey) && whole[kKey].is_object();
   bool texts = good;
@@ -76,7 +75,7 @@ void Kept::read() {
     if (variable == kNotInImage)
       others += (others.empty() ? "`" : ", `") + entry + "`";
     else if (!fresh_)
-      begin(variable, entry, value.is_string() ? value.get<std::string>() : value.dump());
+      begin(variable, entry, value.is_string() ? value.get<std::string>() : json_text(value));
   }
   if (!others.empty())
     std::cerr << fmt::format("note: {} also keeps {}, which the program does not; it stays there\n",
@@ -145,7 +144,7 @@ void Kept::write() {
   if (values_.empty()) return;
   for (const auto& [variable, value] : values_)
     entries_[entry_of(variable)] = shown(variable, value);
-  const std::string text = Json{{kKey, entries_}}.dump(2) + "\n";
+  const std::string text = json_text({{kKey, entries_}}, 2) + "\n";
   if (text != text_) write_edited(file_, std::as_bytes(std::span(text)));
 }
 

@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "link/events.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 
 namespace robosync::tool {
@@ -42,8 +41,8 @@ private:
   const Program& program_;
   std::string file_;
   bool fresh_;
-  nlohmann::ordered_json entries_ = nlohmann::ordered_json::object();  // of the file
-  std::string text_;                                                   // of the file
+  Json entries_ = Json::object();            // of the file
+  std::string text_;                         // of the file
   std::map<std::size_t, vm::Value> values_;  // of the KEPT numbers, by variable
 };
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "rsc/json.hpp"
 #include "rsc/timing.hpp"
 
 namespace robosync::tool {
@@ -11,7 +11,6 @@ namespace {
 
 using analysis::Contributor, analysis::Instructions, analysis::PathTiming, analysis::ResponseTime,
     analysis::ResponseReport;
-using Json = nlohmann::ordered_json;
 
 constexpr double kPercent = 100;
 constexpr std::size_t kShown = 3;

@@ -10,10 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "analysis/report.hpp"
 #include "rsc/board.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "runtime-m4/policy/memory.hpp"
 #include "vm/cost.hpp"
@@ -58,14 +57,14 @@ struct Timing {
 
 // For people, whole lines. `file` names the program.
 [[nodiscard]] std::string timing_text(const Timing& timing, const std::string& file);
-[[nodiscard]] nlohmann::ordered_json timing_json(const Timing& timing, const std::string& file);
+[[nodiscard]] Json timing_json(const Timing& timing, const std::string& file);
 
 // As response_report() takes it: the priority that the program's behaviours may adapt to; 0: none.
 [[nodiscard]] int cap_of(const vm::Image& image);
 
 // The response times: a table, whole lines, and the same as JSON.
 [[nodiscard]] std::string response_text(const analysis::ResponseReport& report);
-[[nodiscard]] nlohmann::ordered_json response_json(const analysis::ResponseReport& report);
+[[nodiscard]] Json response_json(const analysis::ResponseReport& report);
 // Why the board cannot keep up with a program: what is too much, then what costs most, and how to fix it.
 struct Overload {
   std::string what;  // empty: it can

@@ -1,15 +1,13 @@
 // The timing as a table and as JSON, with the same figures.
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "rsc/json.hpp"
 #include "rsc/names.hpp"
 #include "rsc/timing.hpp"
 #include "vm/verifier.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string percent(const Share& share) {
   return fmt::format("{:.1f} %",

@@ -6,11 +6,10 @@
 #include <cctype>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "compiler/config/values.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/character_names.hpp"
+#include "compiler/source/json.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/units/units.hpp"
 
@@ -117,9 +116,8 @@ Span span_of(const Mistake& mistake, std::size_t begin, std::size_t end) {
 void mend(const Mistake& mistake, Span span, std::string_view replacement, Diagnostic& diagnostic) {
   std::string mended(mistake.text);
   mended.replace(span.begin, span.end - span.begin, replacement);
-  diagnostic.fix(
-      span, std::string(replacement),
-      nlohmann::ordered_json::accept(mended) ? Applicability::certain : Applicability::likely);
+  diagnostic.fix(span, std::string(replacement),
+                 Json::accept(mended) ? Applicability::certain : Applicability::likely);
 }
 
 constexpr std::array<char32_t, 8> kCurlyQuotes = {0x2018, 0x2019, 0x201A, 0x201C,

@@ -17,13 +17,14 @@ struct Style {
   std::string_view error, warning, note, quiet, strong, off;
 };
 
-constexpr Style plain{};
-constexpr Style colored{"\x1b[1;31m", "\x1b[1;33m", "\x1b[1;36m", "\x1b[34m", "\x1b[1m", "\x1b[0m"};
+constexpr Style kPlain{};
+constexpr Style kColored{"\x1b[1;31m", "\x1b[1;33m", "\x1b[1;36m",
+                         "\x1b[34m",   "\x1b[1m",    "\x1b[0m"};
 
 class Renderer {
 public:
   Renderer(const SourceMap& sources, bool color)
-      : sources_(sources), style_(color ? colored : plain) {}
+      : sources_(sources), style_(color ? kColored : kPlain) {}
 
   std::string render(const Diagnostic& diagnostic) {
     text_.clear();

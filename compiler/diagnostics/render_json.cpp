@@ -1,13 +1,11 @@
 // Diagnostics for programs: one JSON object for `--format json`. See render.hpp.
-#include <nlohmann/json.hpp>
 
 #include "compiler/diagnostics/render.hpp"
+#include "compiler/source/json.hpp"
 
 namespace robosync::compiler {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json place(Span span, const SourceMap& sources) {
   const SourceFile& file = sources.file(span.file);
@@ -53,7 +51,7 @@ std::string render_json(const Diagnostics& diagnostics, const SourceMap& sources
                        {"errors", diagnostics.errors()},
                        {"warnings", diagnostics.warnings()}};
   // Messages quote the source, which may not be valid UTF-8.
-  return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(result) + "\n";
 }
 
 }  // namespace robosync::compiler

@@ -1,15 +1,12 @@
 // See sarif.hpp.
 #include "compiler/diagnostics/sarif.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "compiler/source/ascii.hpp"
+#include "compiler/source/json.hpp"
 
 namespace robosync::compiler {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A path as a relative or absolute URI reference; other characters than letters, digits and "-._~/" become %XX.
 std::string uri_of(std::string_view path) {
@@ -94,8 +91,7 @@ Json rules() {
 
 void SarifLog::add(const Diagnostics& diagnostics, const SourceMap& sources) {
   for (const Diagnostic& diagnostic : diagnostics.all())
-    results_.push_back(
-        result_of(diagnostic, sources).dump(-1, ' ', false, Json::error_handler_t::replace));
+    results_.push_back(json_text(result_of(diagnostic, sources)));
 }
 
 std::string SarifLog::text() const {
@@ -103,11 +99,11 @@ std::string SarifLog::text() const {
               {"columnKind", "unicodeCodePoints"},
               {"results", Json::array()}};
   for (const std::string& result : results_)
-    run["results"].push_back(Json::parse(result));
+    run["results"].push_back(read_json(result));
   const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
                     {"version", "2.1.0"},
                     {"runs", Json::array({run})}};
-  return log.dump() + "\n";
+  return json_text(log) + "\n";
 }
 
 }  // namespace robosync::compiler

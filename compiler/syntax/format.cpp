@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kIndent = 2;         // columns per level
 constexpr std::size_t kBeforeComment = 2;  // columns, at least
-constexpr std::string_view kBlanks = " \t\v\f\r";
+constexpr std::string_view kWhiteSpace = " \t\v\f\r";
 
 // Takes a space on either side. Minus is not here: it may be a sign.
 bool is_spaced(TokenKind kind) {
@@ -41,9 +41,9 @@ bool is_space_between(TokenKind left, TokenKind right, bool written) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+  const std::size_t first = text.find_first_not_of(kWhiteSpace);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+  return text.substr(first, text.find_last_not_of(kWhiteSpace) + 1 - first);
 }
 
 // Counts code points, which take one column each in what programs are written in.

@@ -7,18 +7,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "compiler/source/utf8.hpp"
 #include "rsc/bridge/topics.hpp"
 #include "rsc/device/introduction.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/trace/channels.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string root_of(const std::string& name) {
   if (topic_part(name) != name)
@@ -29,7 +27,7 @@ std::string root_of(const std::string& name) {
 }
 
 std::string as_text(const Json& payload) {
-  return payload.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(payload);
 }
 
 constexpr std::string_view kDo = "do/";
@@ -96,7 +94,7 @@ void Bridge::current(const Current& current, const TraceNames& names) {
 }
 
 void Bridge::event(const link::Event& event, const TraceNames& names) {
-  Json line = Json::parse(trace_json(event, names));
+  Json line = read_json(trace_json(event, names));
   const Topic topic = topic_of(line);
   if (topic.name == kProgram)
     line["program"] = program_json(image_);

@@ -7,6 +7,7 @@
 
 #include "rsc/bridge/mqtt.hpp"
 #include "rsc/device/viewer.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -27,7 +28,7 @@ public:
   bool work(Session* session) override;
 
 private:
-  void publish(const std::string& topic, const nlohmann::ordered_json& payload, bool retain);
+  void publish(const std::string& topic, const Json& payload, bool retain);
   void online(bool is);
   void stopped(bool is);
   void take(const MqttMessage& message, Session* session);

@@ -5,12 +5,10 @@
 #include <initializer_list>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFeed = "feed/";
 
@@ -61,11 +59,12 @@ std::optional<std::string> reading_of(const std::string& topic, const std::strin
   if (!topic.starts_with(kFeed)) return std::nullopt;
   std::string channel = topic.substr(kFeed.size());
   std::ranges::replace(channel, '/', '.');
-  const Json value = Json::parse(payload, nullptr, false);
+  const Json value = read_json(payload);
   std::string text = payload;  // 20cm
   if (value.is_string()) text = value.get<std::string>();
   if (value.is_object() && value.contains("value"))
-    text = value["value"].is_string() ? value["value"].get<std::string>() : value["value"].dump();
+    text =
+        value["value"].is_string() ? value["value"].get<std::string>() : json_text(value["value"]);
   return channel + "=" + text;
 }
 

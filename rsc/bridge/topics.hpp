@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -16,7 +16,7 @@ struct Topic {
 };
 
 // `event`: a line of a trace.
-[[nodiscard]] Topic topic_of(const nlohmann::ordered_json& event);
+[[nodiscard]] Topic topic_of(const Json& event);
 
 // A name as part of a topic: without "/", "+", "#" and unprintable characters.
 [[nodiscard]] std::string topic_part(const std::string& name);

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
+#include "rsc/json.hpp"
 #include "rsc/trace/event_reader.hpp"
 
 namespace robosync::tool {
@@ -79,8 +78,7 @@ std::vector<Held> held_back(const Current& current, const TraceNames& names) {
   return held;
 }
 
-nlohmann::ordered_json current_json(const Current& current, const TraceNames& names) {
-  using Json = nlohmann::ordered_json;
+Json current_json(const Current& current, const TraceNames& names) {
   Json object{{"stopped", current.stopped}, {"tripped", Json::array()}, {"halted", Json::array()}};
   for (const link::Event& event : current.events) {
     const EventReader reader(event, names);

@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "link/events.hpp"
 #include "rsc/device/client.hpp"
+#include "rsc/json.hpp"
 #include "rsc/trace/trace_format.hpp"
 
 namespace robosync::tool {
@@ -27,6 +26,6 @@ struct Held {
 };
 [[nodiscard]] std::vector<Held> held_back(const Current& current, const TraceNames& names);
 // {"stopped": false, "tripped": [{"rule": 0, "line": 10}], "halted": ["wheel"]}
-[[nodiscard]] nlohmann::ordered_json current_json(const Current& current, const TraceNames& names);
+[[nodiscard]] Json current_json(const Current& current, const TraceNames& names);
 
 }  // namespace robosync::tool

@@ -5,8 +5,8 @@
 #include <chrono>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "rsc/json.hpp"
 #include "rsc/names.hpp"
 #include "runtime-m4/policy/threads.hpp"
 #include "vm/drivers.hpp"
@@ -80,18 +80,18 @@ std::string silent_text(const OnBus& device) {
                      device.failed, device.failed == 1 ? "" : "s", look);
 }
 
-nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices) {
-  auto list = nlohmann::ordered_json::array();
+Json devices_json(const std::vector<OnBus>& devices) {
+  auto list = Json::array();
   for (const OnBus& device : devices)
-    list.push_back({{"sensor", device.name},
-                    {"driver", device.driver},
-                    {"bus", device.bus},
-                    {device.spi ? "pin" : "address",
-                     device.spi ? nlohmann::ordered_json(device.address)
-                                : nlohmann::ordered_json(fmt::format("0x{:02x}", device.address))},
-                    {"answers", device.asked ? nlohmann::ordered_json(!device.silent) : nullptr},
-                    {"bus_held", device.held},
-                    {"failed", device.failed}});
+    list.push_back(
+        {{"sensor", device.name},
+         {"driver", device.driver},
+         {"bus", device.bus},
+         {device.spi ? "pin" : "address",
+          device.spi ? Json(device.address) : Json(fmt::format("0x{:02x}", device.address))},
+         {"answers", device.asked ? Json(!device.silent) : nullptr},
+         {"bus_held", device.held},
+         {"failed", device.failed}});
   return list;
 }
 

@@ -5,10 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "link/messages.hpp"
 #include "rsc/device/client.hpp"
+#include "rsc/json.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::tool {
@@ -37,6 +36,6 @@ struct OnBus {
 [[nodiscard]] std::string found_text(const OnBus& device);
 // "touch at address 0x70 on i2c bus 0 does not answer (12 transfers failed): …", with what to check.
 [[nodiscard]] std::string silent_text(const OnBus& device);
-[[nodiscard]] nlohmann::ordered_json devices_json(const std::vector<OnBus>& devices);
+[[nodiscard]] Json devices_json(const std::vector<OnBus>& devices);
 
 }  // namespace robosync::tool

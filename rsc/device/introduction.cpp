@@ -1,20 +1,19 @@
 // See introduction.hpp.
 #include "rsc/device/introduction.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "rsc/device/orders.hpp"
+#include "rsc/json.hpp"
 #include "rsc/names.hpp"
 
 namespace robosync::tool {
 
-nlohmann::ordered_json robot_json(const link::HelloReply& board) {
+Json robot_json(const link::HelloReply& board) {
   const std::string name = text_of(board.robot);
-  return name.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(name);
+  return name.empty() ? Json() : Json(name);
 }
 
-nlohmann::ordered_json introduction_json(const link::HelloReply& board, const Past& past,
-                                         const std::vector<OnBus>& silent) {
+Json introduction_json(const link::HelloReply& board, const Past& past,
+                       const std::vector<OnBus>& silent) {
   return {{"name", text_of(board.board)},       {"robot", robot_json(board)},
           {"uptime_us", past.status.uptime_us}, {"reset_reason", reset_reason(past.status)},
           {"faults", past.status.faults},       {"last_fault", last_fault_json(past)},

@@ -3,19 +3,17 @@
 
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "link/messages.hpp"
 #include "rsc/device/devices.hpp"
 #include "rsc/device/past.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
 // The robot's own name; null if it has none.
-[[nodiscard]] nlohmann::ordered_json robot_json(const link::HelloReply& board);
+[[nodiscard]] Json robot_json(const link::HelloReply& board);
 // Which board and robot it is, what it remembers, whose it is, and which of its devices do not answer.
-[[nodiscard]] nlohmann::ordered_json introduction_json(const link::HelloReply& board,
-                                                       const Past& past,
-                                                       const std::vector<OnBus>& silent);
+[[nodiscard]] Json introduction_json(const link::HelloReply& board, const Past& past,
+                                     const std::vector<OnBus>& silent);
 
 }  // namespace robosync::tool

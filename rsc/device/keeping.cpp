@@ -7,7 +7,6 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/device/session.hpp"
 #include "rsc/failure.hpp"
@@ -18,7 +17,6 @@ namespace {
 
 using link::Keeping;
 using std::chrono::milliseconds;
-using Json = nlohmann::ordered_json;
 
 constexpr milliseconds kReading{10'000};  // a board needs one second for the largest program
 constexpr milliseconds kLook{20};
@@ -31,6 +29,7 @@ constexpr std::uint64_t kEvaluatedUs = std::uint64_t{2} * policy::kSafetyPeriodM
 constexpr std::array kKeepingStates = {
 #define KEEPING(name, doc) std::string_view(#name),
 #include "link/keeping.def"
+#include "rsc/json.hpp"
 #undef KEEPING
 };
 

@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "link/messages.hpp"
 #include "rsc/device/client.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -21,7 +20,7 @@ namespace robosync::tool {
 [[nodiscard]] bool has_failed_trial(const link::Kept& kept, const link::ProgramHash& uploaded);
 // The program that `rsc rollback` returns to, or why there is none.
 [[nodiscard]] std::string rollback_text(const link::Kept& kept);
-[[nodiscard]] nlohmann::ordered_json keeping_json(const link::Kept& kept);
+[[nodiscard]] Json keeping_json(const link::Kept& kept);
 
 // Waits until the trial of the running program is over.
 [[nodiscard]] link::Kept after_trial(Client& client);

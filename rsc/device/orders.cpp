@@ -10,6 +10,7 @@
 #include "link/order.hpp"
 #include "link/wire.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -93,11 +94,10 @@ std::string owner_text(const link::Authority& authority) {
   return "?";
 }
 
-nlohmann::ordered_json owner_json(const link::Authority& authority) {
+Json owner_json(const link::Authority& authority) {
   constexpr std::array kWords = {"impossible", "unpaired", "paired"};
   const auto index = static_cast<std::size_t>(authority.pairing);
-  nlohmann::ordered_json object{{"pairing", index < kWords.size() ? kWords[index] : "?"},
-                                {"key", nullptr}};
+  Json object{{"pairing", index < kWords.size() ? kWords[index] : "?"}, {"key", nullptr}};
   if (authority.pairing == Pairing::paired) object["key"] = id_of(authority.key);
   return object;
 }

@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "link/messages.hpp"
 #include "rsc/device/owner_key.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -46,6 +45,6 @@ private:
 
 // Who may give the robot orders, as one line and as JSON.
 [[nodiscard]] std::string owner_text(const link::Authority& authority);
-[[nodiscard]] nlohmann::ordered_json owner_json(const link::Authority& authority);
+[[nodiscard]] Json owner_json(const link::Authority& authority);
 
 }  // namespace robosync::tool

@@ -2,14 +2,12 @@
 #include "rsc/device/past.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/device/session.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json registers(const link::Fault& fault) {
   Json list = Json::array();

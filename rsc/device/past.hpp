@@ -4,10 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "link/messages.hpp"
 #include "rsc/device/client.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -26,8 +25,8 @@ struct Past {
 [[nodiscard]] std::string past_text(const link::Status& status);
 // Which thread faulted, why and where, with all its registers.
 [[nodiscard]] std::string fault_text(const link::Fault& fault);
-[[nodiscard]] nlohmann::ordered_json fault_json(const link::Fault& fault);
+[[nodiscard]] Json fault_json(const link::Fault& fault);
 // null if there was none
-[[nodiscard]] nlohmann::ordered_json last_fault_json(const Past& past);
+[[nodiscard]] Json last_fault_json(const Past& past);
 
 }  // namespace robosync::tool

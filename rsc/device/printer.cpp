@@ -4,18 +4,16 @@
 #include <iostream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/device/introduction.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 void print(const Json& line) {
-  std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;
+  std::cout << json_text(line) << std::endl;
 }
 
 }  // namespace

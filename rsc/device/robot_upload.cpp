@@ -5,19 +5,18 @@
 #include <iostream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/device/keeping.hpp"
 #include "rsc/device/known_image.hpp"
 #include "rsc/device/serial_transport.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
 using std::chrono::milliseconds;
 
 namespace {
-using Json = nlohmann::ordered_json;
 constexpr double kBitsPerByte = 10;  // 8N1
 
 // A SAFETY rule over what nobody has fed trips as soon as the program begins: wait for that.
@@ -55,7 +54,7 @@ Json json_of(const Uploaded& uploaded, const Program& program) {
 }
 
 void print_json(const Json& json) {
-  std::cout << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  std::cout << json_text(json) << '\n';
 }
 
 Uploaded upload_to(const std::string& port, const Program& program, const SendOptions& options,

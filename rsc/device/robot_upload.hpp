@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "rsc/console.hpp"
 #include "rsc/device/devices.hpp"
 #include "rsc/device/uploader.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 
 namespace robosync::tool {
@@ -43,8 +42,8 @@ struct Uploaded {
 [[nodiscard]] double ms_of(const UploadResult& result);
 [[nodiscard]] double wire_ms_of(const UploadResult& result);
 [[nodiscard]] std::string hash_of(const Program& program);
-[[nodiscard]] nlohmann::ordered_json json_of(const Uploaded& uploaded, const Program& program);
-void print_json(const nlohmann::ordered_json& json);
+[[nodiscard]] Json json_of(const Uploaded& uploaded, const Program& program);
+void print_json(const Json& json);
 
 // Throws what Session and upload_program() throw.
 [[nodiscard]] Uploaded upload_to(const std::string& port, const Program& program,

@@ -8,15 +8,13 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/device/session.hpp"
+#include "rsc/json.hpp"
 #include "runtime-m4/policy/standing.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // By the numbers in link::ThreadInfo; kernel::Category has the same order.
 constexpr std::array<std::string_view, policy::kCategories> kCategories = {

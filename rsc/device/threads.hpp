@@ -5,9 +5,8 @@
 #include <span>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "link/messages.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -18,6 +17,6 @@ using ThreadList = std::span<const link::ThreadInfo>;
 [[nodiscard]] std::string threads_table(ThreadList now, ThreadList before);
 // The load of all threads together, in percent of the processor.
 [[nodiscard]] std::optional<double> load_of(ThreadList now, ThreadList before);
-[[nodiscard]] nlohmann::ordered_json threads_json(ThreadList now, ThreadList before);
+[[nodiscard]] Json threads_json(ThreadList now, ThreadList before);
 
 }  // namespace robosync::tool

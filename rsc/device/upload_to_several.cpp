@@ -11,15 +11,13 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/device/keeping.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // One of several robots; each has its own thread.
 struct Robot {

@@ -5,13 +5,10 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include "rsc/json.hpp"
 #include "rsc/lsp/workspace.hpp"
 
 namespace robosync::tool::lsp {
-
-using Json = nlohmann::ordered_json;
 
 // The editor's capabilities from `initialize`.
 struct Client {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "rsc/json.hpp"
 #include "rsc/lsp/answers.hpp"
 
 namespace robosync::tool::lsp {
@@ -39,7 +40,7 @@ bool lists(const Json& list, std::string_view word) {
 
 void Server::send(const Json& message) {
   // Text quoted from a file on disk may not be UTF-8.
-  send_(message.dump(-1, ' ', false, Json::error_handler_t::replace));
+  send_(json_text(message));
 }
 
 void Server::send_error(const Json& id, int code, const std::string& why) {
@@ -51,7 +52,7 @@ void Server::complain(int code, const std::string& why) {
 }
 
 void Server::receive(std::string_view message) {
-  Json read = Json::parse(message, nullptr, false);
+  Json read = read_json(message);
   if (read.is_discarded()) return complain(error::parse_error, "this is not JSON");
   if (!read.is_object()) return complain(error::invalid_request, "a message is an object");
   if (!take_back(read)) queue_.push_back(std::move(read));

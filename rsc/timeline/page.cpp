@@ -5,14 +5,11 @@
 #include <string_view>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "rsc/escaped.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string in_html(std::string_view text) {
   return escaped(text, {{'<', "&lt;"}, {'&', "&amp;"}});
@@ -20,7 +17,7 @@ std::string in_html(std::string_view text) {
 
 // Escapes a text so that it cannot end its HTML element.
 std::string in_script(const Json& run) {
-  return escaped(run.dump(-1, ' ', false, Json::error_handler_t::replace), {{'<', "\\u003c"}});
+  return escaped(json_text(run), {{'<', "\\u003c"}});
 }
 
 }  // namespace

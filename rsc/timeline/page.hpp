@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -15,7 +15,7 @@ struct PageParts {
 [[nodiscard]] PageParts page_parts();
 
 // `run`: from TimelineRecorder. `source`: the lines that the rules' line numbers refer to; may be empty.
-[[nodiscard]] std::string timeline_page(const std::string& title, nlohmann::ordered_json run,
+[[nodiscard]] std::string timeline_page(const std::string& title, Json run,
                                         const std::vector<std::string>& source);
 
 }  // namespace robosync::tool

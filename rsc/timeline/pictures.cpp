@@ -3,12 +3,13 @@
 
 #include <string>
 
+#include "rsc/json.hpp"
 #include "vm/drivers.hpp"
 
 namespace robosync::tool {
 
-nlohmann::ordered_json rows_of(drivers::Picture lights) {
-  nlohmann::ordered_json rows;
+Json rows_of(drivers::Picture lights) {
+  Json rows;
   for (unsigned row = 0; row < vm::kPictureSide; ++row) {
     std::string signs;
     for (unsigned column = 0; column < vm::kPictureSide; ++column, lights >>= 1)

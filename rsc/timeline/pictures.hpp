@@ -3,15 +3,14 @@
 
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
+#include "rsc/json.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "runtime-m4/drivers/pictures.hpp"
 
 namespace robosync::tool {
 
 // Five rows from the top, with # for each light that is on.
-[[nodiscard]] nlohmann::ordered_json rows_of(drivers::Picture lights);
+[[nodiscard]] Json rows_of(drivers::Picture lights);
 // Does the actuator show them, rather than only report its commands?
 [[nodiscard]] bool shows_pictures(const vm::Actuator& actuator);
 // The picture that a command for such an actuator shows, if it shows one.

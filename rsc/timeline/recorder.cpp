@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/units/units.hpp"
+#include "rsc/json.hpp"
 #include "rsc/timeline/pictures.hpp"
 #include "rsc/timeline/thresholds.hpp"
 #include "vm/drivers.hpp"
@@ -15,7 +16,6 @@
 namespace robosync::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using link::EventKind;
 
 Json unit_of(const std::map<std::string, const compiler::Unit*>& written, const std::string& name,
@@ -315,7 +315,7 @@ void TimelineRecorder::add_message(const EventReader& reader) {
                                {"step", event.step}});
 }
 
-nlohmann::ordered_json TimelineRecorder::finish(std::uint64_t end_us) {
+Json TimelineRecorder::finish(std::uint64_t end_us) {
   for (std::size_t i = 0; i < moves_.size(); ++i) {
     end_state(i, end_us);
     end_halt(i, end_us);

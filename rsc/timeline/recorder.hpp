@@ -18,9 +18,8 @@
 #include <optional>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "link/events.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/timeline/pictures.hpp"
 #include "rsc/trace/event_reader.hpp"
@@ -36,11 +35,9 @@ public:
 
   void see(const link::Event& event);
   // The whole run, which ended at `end_us`. Ends everything still open.
-  [[nodiscard]] nlohmann::ordered_json finish(std::uint64_t end_us);
+  [[nodiscard]] Json finish(std::uint64_t end_us);
 
 private:
-  using Json = nlohmann::ordered_json;
-
   void begin(const link::Event& first);
   void add_signals();
   void add_rules();

@@ -4,8 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include "rsc/trace/convert.hpp"
 #include "rsc/trace/trace_file.hpp"
 
@@ -26,6 +24,7 @@ std::string cell_of(const std::string& text) {
 
 constexpr std::string_view kEach =
 #define COLUMNS(names, doc) names ","
+#include "rsc/json.hpp"
 #include "rsc/trace/csv_columns.def"
 #undef COLUMNS
     ;
@@ -34,7 +33,7 @@ constexpr auto kCommas = static_cast<std::size_t>(std::ranges::count(kColumns, '
 
 // The cells of `line` in the order of the columns, with commas between them.
 std::string row_of(const TraceLine& line) {
-  nlohmann::ordered_json more = line.event;
+  Json more = line.event;
   std::string row = std::to_string(line.program);
   std::string_view rest = kColumns;
   for (std::size_t i = 1; i < kCommas; ++i) {
@@ -44,8 +43,7 @@ std::string row_of(const TraceLine& line) {
     more.erase(key);
   }
   row += ',';
-  if (!more.empty())
-    row += cell_of(more.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  if (!more.empty()) row += cell_of(json_text(more));
   return row;
 }
 

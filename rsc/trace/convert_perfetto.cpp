@@ -5,15 +5,13 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "rsc/json.hpp"
 #include "rsc/trace/convert.hpp"
 #include "rsc/trace/lanes.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 class Events {
 public:
@@ -57,7 +55,7 @@ public:
 
   [[nodiscard]] std::string text() && {
     const Json whole{{"traceEvents", std::move(events_)}, {"displayTimeUnit", "ms"}};
-    return whole.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(whole) + "\n";
   }
 
 private:

@@ -30,7 +30,7 @@ std::string command_text(const TraceLine& line) {
     if (is_param && key != "word") {
       std::string name = key;
       std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
-      text += fmt::format(" {} {}", name, value.dump());
+      text += fmt::format(" {} {}", name, json_text(value));
     }
     is_param = is_param || key == "verb";
   }

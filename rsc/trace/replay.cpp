@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/trace/replay_comparison.hpp"
 #include "rsc/trace/replay_event.hpp"
@@ -18,8 +19,6 @@
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kLongestUs = std::uint64_t{24} * 3600 * 1'000'000;
 constexpr int kMostAttempts = 16;  // to find when readings came
@@ -73,7 +72,7 @@ Replayed replay(const RecordedProgram& recorded, const std::string& file,
     std::vector<Decided> replayed;
     ReplayFeeder* feeder = nullptr;
     const auto take = [&](const link::Event& event) {
-      Json line = Json::parse(trace_json(event, names));
+      Json line = read_json(trace_json(event, names));
       if (feeder != nullptr) feeder->see(line);
       if (is_compared(kind_of(line))) replayed.push_back({std::move(line), event});
     };

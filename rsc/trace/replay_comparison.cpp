@@ -7,14 +7,13 @@
 #include <map>
 #include <string>
 
+#include "rsc/json.hpp"
 #include "rsc/trace/event_reader.hpp"
 #include "rsc/trace/replay_event.hpp"
 #include "rsc/trace/time_units.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A rule outside a BEHAVIOR is named by its line.
 void leave_lines_out(Json& event) {
@@ -66,7 +65,7 @@ std::optional<Json> with_times_of(const Json& recorded, const Decided& own, cons
     if (std::abs(apart_ms) * kMicroseconds > static_cast<double>(most_us)) return std::nullopt;
     event.values[value] += static_cast<std::int32_t>(apart_ms);
   }
-  return Json::parse(trace_json(event, names));
+  return read_json(trace_json(event, names));
 }
 
 // Within a millisecond, events are ordered only by their causes: a finished command and a step with a reading may come in either
@@ -113,8 +112,8 @@ public:
 private:
   bool differs(const RecordedEvent* recorded, const Decided* replayed) {
     result_.difference = Difference{recorded == nullptr ? 0 : recorded->line,
-                                    recorded == nullptr ? "" : recorded->event.dump(),
-                                    replayed == nullptr ? "" : replayed->line.dump()};
+                                    recorded == nullptr ? "" : json_text(recorded->event),
+                                    replayed == nullptr ? "" : json_text(replayed->line)};
     return false;
   }
 

@@ -6,9 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "link/events.hpp"
+#include "rsc/json.hpp"
 #include "rsc/trace/replay.hpp"
 #include "rsc/trace/replay_file.hpp"
 #include "rsc/trace/trace_format.hpp"
@@ -24,7 +23,7 @@ enum class Lines : std::uint8_t { compared, of_another };
 // What the replay decides.
 // NOLINTNEXTLINE(bugprone-exception-escape): JSON ends itself with memory of its own
 struct Decided {
-  nlohmann::ordered_json line;
+  Json line;
   link::Event event;
 };
 

@@ -5,13 +5,12 @@
 #include <iterator>
 #include <string_view>
 
+#include "rsc/json.hpp"
 #include "rsc/trace/replay_event.hpp"
 #include "rsc/trace/time_units.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Events that the board stamps with the time of a step; other events have their own times.
 bool is_of_step(const Json& event) {

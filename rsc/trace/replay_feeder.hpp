@@ -9,8 +9,7 @@
 #include <string>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
+#include "rsc/json.hpp"
 #include "rsc/trace/replay_file.hpp"
 #include "rsc/trace/replay_readings.hpp"
 #include "runtime-m4/sim/simulator.hpp"
@@ -27,7 +26,7 @@ public:
   // Runs the robot until the last recorded event.
   void run();
   // Gets each event of that robot when it happens.
-  void see(const nlohmann::ordered_json& event);
+  void see(const Json& event);
 
 private:
   // The last event of a step: what it is about, and which one of these it is, from 1.

@@ -10,12 +10,11 @@
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/trace/trace_file.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kHex = 16;
 
@@ -95,16 +94,15 @@ std::string image_line(std::span<const std::byte> image) {
   std::string hex;
   for (const std::byte byte : image)
     hex += fmt::format("{:02x}", std::to_integer<unsigned>(byte));
-  return Json{{"event", "image"}, {"bytes", image.size()}, {"hex", hex}}.dump() + "\n";
+  return json_text({{"event", "image"}, {"bytes", image.size()}, {"hex", hex}}) + "\n";
 }
 
 std::string whole_line() {
-  return Json{{"event", "whole"}}.dump() + "\n";
+  return json_text({{"event", "whole"}}) + "\n";
 }
 
 std::string gap_line(const std::string& why) {
-  return Json{{"event", "gap"}, {"why", why}}.dump(-1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
+  return json_text({{"event", "gap"}, {"why", why}}) + "\n";
 }
 
 RecordedRun read_recording(const std::string& file) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -21,7 +21,7 @@ namespace robosync::tool {
 // NOLINTNEXTLINE(bugprone-exception-escape): JSON ends itself with memory of its own
 struct RecordedEvent {
   std::size_t line = 0;  // of the file
-  nlohmann::ordered_json event;
+  Json event;
 };
 
 // The recording of one program from its start, up to the first gap.

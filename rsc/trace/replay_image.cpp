@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "rsc/json.hpp"
 #include "rsc/trace/replay_event.hpp"
 #include "vm/drivers.hpp"
 #include "vm/identity.hpp"
@@ -15,8 +16,6 @@
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // The record at `index` of a section, in the bytes behind the image.
 template <typename Record, typename How>

@@ -8,13 +8,12 @@
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/replay_event.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A reading as in the trace: a label, or a number in the canonical unit.
 vm::Value value_of(const vm::Image& image, std::uint8_t channel, const Json& value) {

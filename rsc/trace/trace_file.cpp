@@ -8,11 +8,10 @@
 #include <fmt/format.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 53;  // 285 years; sums cannot overflow
 
@@ -69,8 +68,7 @@ private:
 std::string TraceLine::text(const char* key) const {
   const auto found = event.find(key);
   if (found == event.end() || found->is_null()) return {};
-  return found->is_string() ? found->get<std::string>()
-                            : found->dump(-1, ' ', false, Json::error_handler_t::replace);
+  return found->is_string() ? found->get<std::string>() : json_text(*found);
 }
 
 void read_trace(const std::string& file, const std::function<void(const TraceLine&)>& see) {
@@ -83,7 +81,7 @@ void read_trace(const std::string& file, const std::function<void(const TraceLin
   for (std::string text; next_line(stream, text, file, line.number + 1);) {
     ++line.number;
     const bool is_cut = stream.eof();  // every complete line ends with a newline
-    line.event = Json::parse(text, nullptr, false);
+    line.event = read_json(text);
     if (is_cut && line.event.is_discarded()) {
       std::cerr << fmt::format("note: {}:{}: this line is incomplete, and is left out\n", file,
                                line.number);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include <nlohmann/json.hpp>
+#include "rsc/json.hpp"
 
 namespace robosync::tool {
 
@@ -15,7 +15,7 @@ struct TraceLine {
   std::size_t number = 0;   // in the file, from 1
   std::size_t program = 0;  // 1 for the first one; a monitor may see several, one after the other
   std::uint64_t at_us = 0;  // program time plus that of earlier programs: it never goes back
-  nlohmann::ordered_json event;
+  Json event;
 
   // Empty if the event does not have it.
   [[nodiscard]] std::string text(const char* key) const;

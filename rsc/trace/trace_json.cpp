@@ -3,7 +3,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "compiler/units/units.hpp"
 #include "rsc/trace/event_reader.hpp"
@@ -13,12 +12,12 @@
 namespace robosync::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using link::EventKind;
 
 // FOR is `for_` in the list because `for` is a word of C++.
 constexpr std::array<std::string_view, EventReader::kParamCount> kParamKeys = {
 #define PARAM(name, spelling, doc) #name,
+#include "rsc/json.hpp"
 #include "vm/params.def"
 #undef PARAM
 };
@@ -163,7 +162,7 @@ std::string trace_json(const link::Event& event, const TraceNames& names) {
   add_subject(object, reader);
   add_object(object, reader);
   add_values(object, reader);
-  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(object);
 }
 
 }  // namespace robosync::tool

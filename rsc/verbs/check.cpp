@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "analysis/report.hpp"
 #include "compiler/diagnostics/render.hpp"
@@ -18,6 +17,7 @@
 #include "rsc/board.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/timing.hpp"
 #include "rsc/verb.hpp"
@@ -38,7 +38,7 @@ struct CheckOptions {
 };
 
 // Several files give one report.
-void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
+void append(Json& all, const Json& one) {
   for (const auto& diagnostic : one.at("diagnostics"))
     all["diagnostics"].push_back(diagnostic);
   for (const char* const count : {"errors", "warnings"})
@@ -47,7 +47,7 @@ void append(nlohmann::ordered_json& all, const nlohmann::ordered_json& one) {
 
 // The cost of a program, even of one that is too much for its board.
 void report_timing(const CheckOptions& options, const std::string& file, compiler::Result& compiled,
-                   nlohmann::ordered_json& report) {
+                   Json& report) {
   const Program program(std::move(compiled.image), file, memory_of(compiled.board));
   const policy::BoardCosts& costs = costs_of(compiled.board);
   const Timing timing = timing_of(program.image(), program.board());
@@ -87,8 +87,7 @@ public:
                   << std::endl;
         break;
       case Report::json:
-        append(report_, nlohmann::ordered_json::parse(
-                            compiler::render_json(result.diagnostics, result.sources)));
+        append(report_, read_json(compiler::render_json(result.diagnostics, result.sources)));
         break;
       case Report::sarif:
         log_.add(result.diagnostics, result.sources);
@@ -106,14 +105,13 @@ public:
 
   // After all files have been checked.
   void finish() const {
-    if (options_.format == Report::json) std::cout << report_.dump() << '\n';
+    if (options_.format == Report::json) std::cout << json_text(report_) << '\n';
     if (options_.format == Report::sarif) std::cout << log_.text();
   }
 
 private:
   const CheckOptions& options_;
-  nlohmann::ordered_json report_ = {
-      {"diagnostics", nlohmann::ordered_json::array()}, {"errors", 0}, {"warnings", 0}};
+  Json report_ = {{"diagnostics", Json::array()}, {"errors", 0}, {"warnings", 0}};
   compiler::SarifLog log_{ROBOSYNC_VERSION};
 };
 

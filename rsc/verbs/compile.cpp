@@ -5,11 +5,11 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "compiler/diagnostics/render.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/output.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
@@ -46,17 +46,17 @@ void print_human(std::ostream& out, const std::string& output, const Program& pr
 }
 
 void print_json(std::ostream& out, const std::string& output, const Program& program) {
-  nlohmann::ordered_json report;
+  Json report;
   report["file"] = output;
   report["bytes"] = program.bytes().size();
   report["step_cost"] = program.image().header->step_cost;
-  report["sections"] = nlohmann::ordered_json::array();
+  report["sections"] = Json::array();
   for (const SectionSize& size : section_sizes(program.image())) {
     report["sections"].push_back({{"section", vm::describe(size.section)},
                                   {"records", size.records},
                                   {"bytes", size.bytes}});
   }
-  out << report.dump() << '\n';
+  out << json_text(report) << '\n';
 }
 
 void compile(const OutputOptions& options) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "compiler/config/robot_reader.hpp"
 #include "compiler/diagnostics/nearest.hpp"
@@ -20,6 +19,7 @@
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
@@ -56,16 +56,16 @@ void explain_code(const ExplainOptions& options) {
     std::cout << explain::code_text(*code);
     return;
   }
-  nlohmann::ordered_json report{{"code", compiler::code_name(*code)},
-                                {"level", compiler::level_name(compiler::default_level(*code))},
-                                {"title", compiler::code_title(*code)}};
+  Json report{{"code", compiler::code_name(*code)},
+              {"level", compiler::level_name(compiler::default_level(*code))},
+              {"title", compiler::code_title(*code)}};
   for (const explain::CodeText& text : explain::code_texts()) {
     if (text.code != *code) continue;
     report["meaning"] = text.meaning;
     report["wrong"] = text.wrong;
     report["mended"] = text.mended;
   }
-  std::cout << report.dump() << '\n';
+  std::cout << json_text(report) << '\n';
 }
 
 // A program without a configuration: its syntax is checked, not what its names mean.
@@ -112,7 +112,7 @@ void explain_file(const ExplainOptions& options) {
   const std::string text = explain::program_text(reading.trees(), result.sources,
                                                  reading.robot ? &*reading.robot : nullptr);
   if (options.format == Format::json) {
-    std::cout << nlohmann::ordered_json{{"file", options.what}, {"text", text}}.dump() << '\n';
+    std::cout << json_text({{"file", options.what}, {"text", text}}) << '\n';
   } else {
     std::cout << text;
   }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
 #include "rsc/device/current.hpp"
@@ -18,14 +17,13 @@
 #include "rsc/device/past.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // The running program's memory, part by part, computed from its image as the board does.
 using Shares = std::array<std::uint32_t, policy::kWhose>;
@@ -139,7 +137,7 @@ void print_board_json(const link::HelloReply& board, std::span<const std::byte> 
   report["kept"] = keeping_json(kept);
   report["buses"] = {{"clears", buses.clears}, {"devices", devices_json(buses.devices)}};
   report["threads"] = threads_json(threads, {});
-  std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  std::cout << json_text(report) << '\n';
 }
 
 void print_human(const link::HelloReply& board, std::span<const std::byte> image, const Past& past,

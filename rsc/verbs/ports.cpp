@@ -5,21 +5,21 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
 #include "rsc/device/seen_boards.hpp"
+#include "rsc/json.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {
 
-nlohmann::ordered_json json_of(const SeenPort& seen) {
-  nlohmann::ordered_json object{{"port", seen.port.name},
-                                {"description", seen.port.description},
-                                {"board", nullptr},
-                                {"may_be", seen.may_be}};
+Json json_of(const SeenPort& seen) {
+  Json object{{"port", seen.port.name},
+              {"description", seen.port.description},
+              {"board", nullptr},
+              {"may_be", seen.may_be}};
   if (seen.answer) {
     object["board"] = seen.answer->board;
     object["firmware"] = seen.answer->firmware;
@@ -41,12 +41,12 @@ void ports(Format format) {
   const std::vector<SeenPort> found = look_at_ports(list_serial_ports(), ask_board);
   const std::vector<SeenDrive> drives = look_at_drives();
   if (format == Format::json) {
-    auto list = nlohmann::ordered_json::array();
+    auto list = Json::array();
     for (const SeenPort& seen : found)
       list.push_back(json_of(seen));
     for (const SeenDrive& seen : drives)
       list.push_back({{"drive", seen.place.string()}, {"board", seen.board}});
-    std::cout << list.dump() << '\n';
+    std::cout << json_text(list) << '\n';
     return;
   }
   for (const SeenPort& seen : found)

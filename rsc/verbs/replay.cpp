@@ -11,18 +11,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/trace/time_units.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ReplayOptions {
   std::string file, program;
@@ -105,7 +103,7 @@ Json json_of(const RecordedProgram& recorded, std::span<const std::byte> image,
   report["early"] = replayed.early;
   report["earliest_us"] = replayed.earliest_us;
   const auto parsed = [](const std::string& line) {
-    return line.empty() ? Json(nullptr) : Json::parse(line);
+    return line.empty() ? Json(nullptr) : read_json(line);
   };
   if (!image.empty()) {
     report["in_its_place"] = !std::ranges::equal(image, recorded.image);
@@ -132,7 +130,7 @@ void replay_all(const ReplayOptions& options) {
       print_human(options, i + 1, run.programs[i], image, replayed);
   }
   if (options.format == Format::json)
-    std::cout << Json{{"programs", reports}, {"not_replayed", run.loose}}.dump() << '\n';
+    std::cout << json_text({{"programs", reports}, {"not_replayed", run.loose}}) << '\n';
   else if (run.loose > 0)
     std::cout << fmt::format(
         "{} events were not replayed: the recording does "

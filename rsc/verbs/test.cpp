@@ -6,12 +6,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/snippet.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/trace/expectations.hpp"
 #include "rsc/trace/time_units.hpp"
@@ -21,8 +21,6 @@
 
 namespace robosync::tool {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kBefore = 500'000;  // shown before a failure, in microseconds
 constexpr std::size_t kTimelineEnds = 15;   // lines at each end of a long timeline
@@ -137,7 +135,7 @@ private:
       const TraceNames names{result.recording.image, result.recording.threads,
                              result.recording.origin};
       for (const link::Event& event : around(result))
-        timeline.push_back(Json::parse(trace_json(event, names)));
+        timeline.push_back(read_json(trace_json(event, names)));
       test["failure"] = {{"line", line(result.failed->span)},
                          {"step", step(result)},
                          {"reason", result.reason},
@@ -157,7 +155,7 @@ void test_file(const std::string& file, const TestOptions& options, Tally& tally
   compiler::Result compiled = compile_file(file, options.how);
   show_diagnostics(compiled, options.quiet);
   if (compiled.diagnostics.errors() > 0) {
-    const Json wrong = Json::parse(compiler::render_json(compiled.diagnostics, compiled.sources));
+    const Json wrong = read_json(compiler::render_json(compiled.diagnostics, compiled.sources));
     for (const Json& one : wrong.at("diagnostics"))
       tally.diagnostics.push_back(one);
     throw Failure(Exit::program,
@@ -181,7 +179,7 @@ void test(const TestOptions& options) {
                       {"passed", tally.passed},
                       {"failed", tally.failed},
                       {"diagnostics", tally.diagnostics}};
-    std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    std::cout << json_text(report) << '\n';
   } else if (!options.quiet && (exit == Exit::fine || tally.passed + tally.failed > 0)) {
     std::cout << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
   }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "rsc/console.hpp"
 #include "rsc/device/keeping.hpp"

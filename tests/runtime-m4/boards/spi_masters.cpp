@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::uintptr_t kSpim2 = 0x4002'3000;
 constexpr std::uintptr_t kSpi1 = 0x4001'3000, kDma1 = 0x4002'0000, kThird = 0x4002'0030;
-constexpr std::uintptr_t kAhb1 = 0x4002'1048, kApb2 = 0x4002'1060;
+constexpr std::uintptr_t kAhb1Clocks = 0x4002'1048, kApb2Clocks = 0x4002'1060;
 constexpr unsigned kNsOf4MHz = 250, kNsOf2500kHz = 400;
 
 std::uint8_t byte_at(std::uint32_t memory, std::size_t index) {
@@ -124,9 +124,9 @@ void NrfSpim::pass(unsigned us) {
 
 std::uint32_t Stm32Spi::read(std::uintptr_t address) {
   switch (address) {
-    case kAhb1:
+    case kAhb1Clocks:
       return ahb1_;
-    case kApb2:
+    case kApb2Clocks:
       return apb2_;
     case kDma1 + 0xA8:
       return select_;
@@ -142,10 +142,10 @@ void Stm32Spi::write(std::uintptr_t address, std::uint32_t value) {
   if ((dma && (ahb1_ & 1) == 0) || (spi && (apb2_ & 1U << 12) == 0)) return;
   const bool on = (dma_ & 1) != 0;
   switch (address) {
-    case kAhb1:
+    case kAhb1Clocks:
       ahb1_ = value;
       return;
-    case kApb2:
+    case kApb2Clocks:
       apb2_ = value;
       return;
     case kDma1 + 0x04:
