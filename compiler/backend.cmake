@@ -89,6 +89,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/timers.cpp
   sema/variables.cpp
   sema/waiting_commands.cpp
+  source/sorting.cpp
   units/units.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE

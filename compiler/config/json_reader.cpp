@@ -139,7 +139,8 @@ std::optional<Value> read(const SourceMap& sources, FileId file, Diagnostics& di
   if (!is_plain_text(sources, file, Code::E0201, diagnostics)) return std::nullopt;
   const std::string_view text = sources.file(file).text();
   Builder builder(text, file, diagnostics);
-  if (!nlohmann::ordered_json::sax_parse(text.begin(), text.end(), &builder)) return std::nullopt;
+  // Everything reads JSON from a std::string: for another type the library would make a parser of its own.
+  if (!nlohmann::ordered_json::sax_parse(std::string(text), &builder)) return std::nullopt;
   return builder.take();
 }
 
