@@ -93,6 +93,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/variables.cpp
   sema/waiting_commands.cpp
   sema/whole_commands.cpp
+  source/sorting.cpp
   units/units.cpp)
 target_link_libraries(robosync_compiler_small PRIVATE nlohmann_json::nlohmann_json)
 target_sources(robosync_compiler PRIVATE

@@ -6,9 +6,7 @@
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <iostream>
-#include <numeric>
 #include <optional>
 #include <system_error>
 
@@ -16,6 +14,7 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/source/ascii.hpp"
+#include "compiler/source/sorting.hpp"
 #include "rsc/algorithm_modules.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
@@ -141,10 +140,9 @@ std::string too_many_text(const policy::Needs& needs, const vm::Verdict& verdict
 }
 
 std::string no_room_text(const policy::Needs& needs, const policy::BoardMemory& board) {
-  std::array<std::size_t, policy::kWhose> order{};
-  std::iota(order.begin(), order.end(), 0U);
   const auto shares = policy::shares_of(needs);
-  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t whose) { return shares[whose]; });
+  const std::vector<std::size_t> order = compiler::sorted_places(
+      shares.size(), [&](std::size_t a, std::size_t b) { return shares[a] > shares[b]; });
   const auto part = [&](std::size_t place) {
     return fmt::format("{} ({})", kWhose[order[place]], shares[order[place]]);
   };

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "compiler/codegen/costly_rules.hpp"
+#include "compiler/source/sorting.hpp"
 #include "rsc/program.hpp"
 
 namespace robosync::tool {
@@ -41,7 +42,7 @@ BehaviorTiming behavior_timing(const vm::Image& image, const vm::Behavior& behav
     timing.rules.push_back(rule_timing(image, r, costs[r]));
     timing.step += costs[r].step();
   }
-  std::ranges::stable_sort(timing.rules, {}, &RuleTiming::line);
+  compiler::sort_stably(timing.rules, {}, &RuleTiming::line);
   return timing;
 }
 
@@ -86,8 +87,8 @@ Timing timing_of(const vm::Image& image, const policy::BoardMemory& board) {
   for (const vm::Behavior& behavior : image.behaviors)
     if (behavior.rule_count > 0)
       timing.behaviors.push_back(behavior_timing(image, behavior, costs));
-  std::ranges::stable_sort(timing.behaviors, {},
-                           [](const BehaviorTiming& behavior) { return behavior.rules[0].line; });
+  compiler::sort_stably(timing.behaviors, {},
+                        [](const BehaviorTiming& behavior) { return behavior.rules[0].line; });
   timing.step = {"step", "instructions", sum(costs, std::mem_fn(&vm::RuleCost::step)),
                  board.step_budget};
   timing.sections = uploaded_sections(image);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "compiler/source/sorting.hpp"
+
 namespace robosync::compiler {
 
 std::vector<CostlyRule> costly_rules(const vm::Image& image) {
@@ -12,8 +14,7 @@ std::vector<CostlyRule> costly_rules(const vm::Image& image) {
   if (!vm::rule_costs(image, costs)) return rules;
   for (std::size_t r = 0; r < costs.size(); ++r)
     rules.push_back({r, costs[r]});
-  std::ranges::stable_sort(rules, std::greater(),
-                           [](const CostlyRule& rule) { return rule.cost.step(); });
+  sort_stably(rules, std::greater{}, [](const CostlyRule& rule) { return rule.cost.step(); });
   rules.resize(std::min(rules.size(), kShown));
   return rules;
 }

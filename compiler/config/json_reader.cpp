@@ -3,10 +3,9 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "compiler/config/json_mistakes.hpp"
 #include "compiler/diagnostics/plain_text.hpp"
+#include "compiler/source/json.hpp"
 #include "compiler/source/utf8.hpp"
 
 namespace robosync::compiler::json {
@@ -26,7 +25,7 @@ public:
   bool number_unsigned(std::uint64_t) { return number(); }
   bool number_float(double, const std::string&) { return number(); }
   bool string(std::string& contents) { return scalar(Kind::string, contents); }
-  bool binary(nlohmann::ordered_json::binary_t&) { return false; }  // not in JSON text
+  bool binary(Json::binary_t&) { return false; }  // not in JSON text
   bool start_object(std::size_t) { return open(Kind::object); }
   bool start_array(std::size_t) { return open(Kind::array); }
   bool end_object() { return close(); }
@@ -37,8 +36,7 @@ public:
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string&,
-                   const nlohmann::ordered_json::exception& reason) {
+  bool parse_error(std::size_t position, const std::string&, const Json::exception& reason) {
     report_mistake({text_, file_, cursor_, position, reason.what(),
                     open_.empty() ? std::nullopt : std::optional<Span>(open_.back().span)},
                    diagnostics_);
@@ -139,7 +137,8 @@ std::optional<Value> read(const SourceMap& sources, FileId file, Diagnostics& di
   if (!is_plain_text(sources, file, Code::E0201, diagnostics)) return std::nullopt;
   const std::string_view text = sources.file(file).text();
   Builder builder(text, file, diagnostics);
-  if (!nlohmann::ordered_json::sax_parse(text.begin(), text.end(), &builder)) return std::nullopt;
+  // Everything reads JSON from a std::string: for another type the library would make a parser of its own.
+  if (!Json::sax_parse(std::string(text), &builder)) return std::nullopt;
   return builder.take();
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compiler/source/ascii.hpp"
+#include "compiler/source/sorting.hpp"
 
 namespace robosync::compiler {
 
@@ -263,9 +264,7 @@ void Diagnostics::merge_repeated() {
 }
 
 void Diagnostics::finish() {
-  std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return sort_key(a) < sort_key(b);
-  });
+  sort_stably(all_, {}, sort_key);
   all_.erase(std::unique(all_.begin(), all_.end(), same), all_.end());
   merge_repeated();
 }

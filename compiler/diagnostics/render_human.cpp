@@ -6,6 +6,7 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/snippet.hpp"
+#include "compiler/source/sorting.hpp"
 #include "compiler/source/utf8.hpp"
 
 namespace robosync::compiler {
@@ -74,7 +75,7 @@ private:
     const auto primary = std::find_if(labels.begin(), labels.end(),
                                       [](const Label& label) { return label.primary; });
     const FileId leading = primary == labels.end() ? FileId{0} : primary->span.file;
-    std::stable_sort(labels.begin(), labels.end(), [leading](const Label& a, const Label& b) {
+    sort_stably(labels, [leading](const Label& a, const Label& b) {
       const bool a_leads = a.span.file == leading;
       const bool b_leads = b.span.file == leading;
       if (a_leads != b_leads) return a_leads;

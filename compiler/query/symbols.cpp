@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/query/collector.hpp"
+#include "compiler/source/sorting.hpp"
 
 namespace robosync::compiler::query {
 namespace {
@@ -27,7 +28,7 @@ Symbols::Symbols(const Project& project) {
     one.declares = one.declares || (symbol.is_there && symbol.declared->file == one.span.file &&
                                     symbol.declared->begin == one.span.begin);
   }
-  std::ranges::stable_sort(occurrences_, {}, place_of);
+  sort_stably(occurrences_, {}, place_of);
   // A sensor without its own channels has the same place as its channels: the first occurrence is the sensor.
   const auto same = [](const Occurrence& a, const Occurrence& b) {
     return place_of(a) == place_of(b);

@@ -1,8 +1,10 @@
 #include "compiler/sema/behaviors.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "compiler/ir/walk.hpp"
+#include "compiler/source/sorting.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -151,9 +153,7 @@ std::vector<ir::Behavior> Behaviors::finish() {
     if (!names_.contains(fold_name(config.name.text)))
       diagnostics_.report(Code::W0216, "the program has no behaviour " + config.name.shown())
           .label(config.name.span);
-  std::stable_sort(
-      behaviors_.begin(), behaviors_.end(),
-      [](const ir::Behavior& a, const ir::Behavior& b) { return a.priority > b.priority; });
+  sort_stably(behaviors_, std::greater{}, &ir::Behavior::priority);
   return std::move(behaviors_);
 }
 

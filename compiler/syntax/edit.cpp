@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/sorting.hpp"
 #include "compiler/syntax/blocks.hpp"
 
 namespace robosync::compiler {
@@ -110,8 +111,7 @@ public:
     close_blocks();
     respell();
     skips();
-    std::stable_sort(edits_.begin(), edits_.end(),
-                     [](const Edit& a, const Edit& b) { return a.cost < b.cost; });
+    sort_stably(edits_, {}, &Edit::cost);
     return std::move(edits_);
   }
 

@@ -51,7 +51,7 @@ void Server::complain(int code, const std::string& why) {
   send_error(nullptr, code, why);
 }
 
-void Server::receive(std::string_view message) {
+void Server::receive(const std::string& message) {
   Json read = read_json(message);
   if (read.is_discarded()) return complain(error::parse_error, "this is not JSON");
   if (!read.is_object()) return complain(error::invalid_request, "a message is an object");

@@ -34,7 +34,7 @@ public:
   explicit Server(Send send) : send_(std::move(send)) {}
 
   // Queues a message for step(). A cancellation is handled immediately.
-  void receive(std::string_view message);
+  void receive(const std::string& message);
   // Reports a message that could not be read, and why.
   void complain(int code, const std::string& why);
   // The number of messages that wait for step().

@@ -16,6 +16,7 @@
 
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/ascii.hpp"
+#include "compiler/source/sorting.hpp"
 #include "compiler/units/units.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
@@ -429,7 +430,7 @@ Scenario ScenarioReader::read() {
     scenario_.duration_us = at_key("duration", [&] { return time(duration); });
   }
   read_stimuli(json_object_get(root.get(), "stimuli"));
-  std::ranges::stable_sort(scenario_.stimuli, {}, &Stimulus::at_us);
+  compiler::sort_stably(scenario_.stimuli, {}, &Stimulus::at_us);
   return std::move(scenario_);
 }
 

@@ -21,14 +21,19 @@ REFUSED = 2  # companion/exit.hpp: asked_wrongly
 TAUGHT, SAID = ((1, 0), (0.93, -30), (1.07, 30)), ((0.87, 50), (1.13, -50), (0.96, 20))
 LONGEST = 4 * RATE * BYTES  # of sounds that are none of the words
 DIGITS = tuple("1 2 3 4 5 6 7 8 9 10 20 30".split())
-# A synthetic voice's words, and other words; (speed, pitch) of the samples, and of the words that are said.
+# A synthetic voice's language, words in it, and other words; below, (speed, pitch) of the samples, and of the words that are said.
 SPEAKS = {
-    "de": ("hallo komm stopp links rechts singen tanzen schlafen", "eins zwei banane fenster himmel regen schule lampe"),
-    "cmn": ("你好 停下 过来 左边 右边 唱歌 跳舞 睡觉", "苹果 电话 学校 朋友 天气 再见 老师 水"),
-    "fi": ("hei tule seis vasen oikea laula tanssi nuku", "yksi kaksi omena ikkuna taivas sade koulu lamppu"),
-    "vi": ("xin_chào dừng_lại lại_đây bên_trái bên_phải hát nhảy ngủ", "táo điện_thoại trường bạn nước thời_tiết thầy hai"),
-    "pt-br+f3": ("olá vem pare esquerda direita canta dança dorme", "um dois banana janela chuva escola amigo água"),
+    "de": ("German", "hallo komm stopp links rechts singen tanzen schlafen", "eins zwei banane fenster himmel regen schule lampe"),
+    "cmn": ("Mandarin", "你好 停下 过来 左边 右边 唱歌 跳舞 睡觉", "苹果 电话 学校 朋友 天气 再见 老师 水"),
+    "vi": ("Vietnamese", "xin_chào dừng_lại lại_đây bên_trái bên_phải hát nhảy ngủ", "táo điện_thoại trường bạn nước thời_tiết thầy hai"),
+    "pt-br+f3": ("Portuguese", "olá vem pare esquerda direita canta dança dorme", "um dois banana janela chuva escola amigo água"),
+    "fi": ("Finnish", "hei tule seis vasen oikea laula tanssi nuku", "yksi kaksi omena ikkuna taivas sade koulu lamppu"),
+    "yue": ("Cantonese", "你好 過嚟 停低 左邊 右邊 唱歌 跳舞 瞓覺", "蘋果 電話 學校 朋友 天氣 再見 老師 水"),
+    "hi+f1": ("Hindi", "नमस्ते आओ रुको बाएँ दाएँ गाओ नाचो सो_जाओ", "एक दो सेब खिड़की आकाश बारिश स्कूल दीपक"),
+    "sw": ("Swahili", "habari njoo simama kushoto kulia imba cheza lala", "moja mbili ndizi dirisha anga mvua shule taa"),
 }
+# Those with which settings have been chosen. A voice that served for that goes here, and another one takes its place in the rates.
+FOR_SETTINGS = ("de", "cmn", "vi", "pt-br+f3")
 VOICE_TAUGHT, VOICE_SAID = ((150, 45), (165, 50), (180, 55)), ((140, 60), (172, 40), (195, 52))
 
 
@@ -81,18 +86,20 @@ def of_voice(voice):
         spoken = subprocess.run(["espeak-ng", "-v", voice, "-s", str(speed), "-p", str(pitch), "--stdout", text.replace("_", " ")],
                                 capture_output=True, check=True).stdout
         return loud(sox(["-t", "wav", "-"], input=spoken))
-    words, others = (text.split() for text in SPEAKS[voice])
-    return Set(f"{len(words)} words, a synthetic voice (espeak-ng, {voice})",
+    language, *texts = SPEAKS[voice]
+    words, others = (text.split() for text in texts)
+    return Set(f"{len(words)} words of {language}, a synthetic voice (espeak-ng, {voice})",
                {word: [say(word, *how) for how in VOICE_TAUGHT] for word in words},
                [(word, say(word, *how)) for word in words for how in VOICE_SAID],
                [say(word, *how) for word in others for how in VOICE_TAUGHT])
 
 
 def sets(settings):
+    voices = [of_voice(voice) for voice in SPEAKS if (voice in FOR_SETTINGS) == settings]
     if settings:
-        return [*(of_people(f"asterisk-core-sounds-{language}-wav") for language in ("en", "fr", "it")), of_voice("de"), of_voice("cmn")]
+        return [*(of_people(f"asterisk-core-sounds-{language}-wav") for language in ("en", "fr", "it")), *voices]
     return [*(of_people(f"asterisk-core-sounds-{language}-wav") for language in ("es", "ru")),
-            of_two_people("asterisk-core-sounds-fr-wav", "asterisk-prompt-fr-armelle"), *map(of_voice, ("fi", "vi", "pt-br+f3"))]
+            of_two_people("asterisk-core-sounds-fr-wav", "asterisk-prompt-fr-armelle"), *voices]
 
 
 def write(path, sound):
