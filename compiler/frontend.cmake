@@ -77,5 +77,6 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/lost_heads.cpp
   syntax/misplaced_words.cpp
   syntax/robot_lines.cpp
+  syntax/unit_apart.cpp
   syntax/wording.cpp
   syntax/wrong_forms.cpp)

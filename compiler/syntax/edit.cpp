@@ -7,6 +7,7 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/sorting.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/unit_apart.hpp"
 
 namespace robosync::compiler {
 
@@ -231,18 +232,9 @@ private:
     return (at > 0 && same(at - 1)) || (at + 1 < tokens_.size() && same(at + 1));
   }
 
-  // `40 cm`: a name directly after digits.
-  bool is_unit_apart(std::size_t at) const {
-    if (at == 0 || tokens_[at].kind != Kinds::NAME || tokens_[at - 1].kind != Kinds::QUANTITY) {
-      return false;
-    }
-    const std::string_view number = source_.text(tokens_[at - 1].span);
-    return !number.empty() && number.back() >= '0' && number.back() <= '9';
-  }
-
   int removal_cost(std::size_t at) const {
     if (repeats_neighbour(at)) return cost::remove_repeated;
-    if (is_unit_apart(at)) return cost::join_unit;
+    if (is_behind_digits(tokens_, source_, at)) return cost::join_unit;
     return tokens_[at].kind == Kinds::END ? cost::remove_end : cost::remove;
   }
 

@@ -8,8 +8,7 @@
 #include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
-#include "compiler/units/foreign_units.hpp"
-#include "compiler/units/units.hpp"
+#include "compiler/syntax/unit_apart.hpp"
 
 namespace robosync::compiler {
 
@@ -177,7 +176,7 @@ private:
     const TokenKind kind = edit_.inserted.front().kind;
     if (kind == Kinds::END) return not_closed(1);
     if (kind == Kinds::NEWLINE) {
-      if (!unit_apart()) line_goes_on();
+      if (!report_unit_apart(tokens_, source_, edit_.at, diagnostics_)) line_goes_on();
       return;
     }
     if ((kind == Kinds::TIMES && bare_brackets()) || then_for_do(kind)) return;
@@ -280,7 +279,9 @@ private:
       show_line(message, edit_.at, failure_.expected);
       return;
     }
-    if (unit_apart() || texts_added(edit_.at) || nothing_follows()) return;
+    if (report_unit_apart(tokens_, source_, edit_.at, diagnostics_) || texts_added(edit_.at) ||
+        nothing_follows())
+      return;
     Diagnostic& message =
         diagnostics_.report(Code::E0009, quote(edit_.at) + " does not belong here");
     if (belongs_to_number(edit_.at) || (says_what_is_done(token.kind) && !stands_twice(edit_.at))) {
@@ -328,35 +329,6 @@ private:
     const bool never =
         is_one_of(tokens_[at].kind, {Kinds::COMMA, Kinds::NOT, Kinds::OPEN, Kinds::CLOSE});
     return !never && (same(at + 1) || (at > 0 && same(at - 1)));
-  }
-
-  // `40 cm`: digits, a space, and a name that may be a unit.
-  bool unit_apart() {
-    if (edit_.at == 0 || tokens_[edit_.at].kind != Kinds::NAME) return false;
-    const Token& number = tokens_[edit_.at - 1];
-    if (number.kind != Kinds::QUANTITY) return false;
-    const std::string digits(source_.text(number.span));
-    if (digits.empty() || digits.back() < '0' || digits.back() > '9') return false;
-    const std::string unit(source_.text(tokens_[edit_.at].span));
-    const Unit* const known = find_unit(unit);
-    const std::string_view foreign = foreign_unit(unit);
-    const std::string_view ours = known != nullptr ? known->spelling : unit_word(unit);
-    if (ours.empty() && foreign.empty()) return false;
-    std::string why = "a unit follows its number without a space";
-    if (!foreign.empty())
-      why = quote(edit_.at) + " does not belong here";
-    else if (known == nullptr)
-      why = "this unit is written `" + std::string(ours) + "` in RSL";
-    Diagnostic& message = diagnostics_.report(Code::E0009, why).label(tokens_[edit_.at].span);
-    if (!foreign.empty()) {
-      message.helps("RSL does not have this unit: " + std::string(foreign));
-      return true;
-    }
-    const std::string better = digits + std::string(ours);
-    message.helps("write `" + better + "`")
-        .fix({number.span.file, number.span.begin, tokens_[edit_.at].span.end}, better,
-             Applicability::likely);
-    return true;
   }
 
   // `"You have" + points`, as other languages join texts.
