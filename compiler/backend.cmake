@@ -78,6 +78,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/expressions.cpp
   sema/follow.cpp
   sema/functions.cpp
+  sema/intervals.cpp
   sema/limits.cpp
   sema/lints.cpp
   sema/lists.cpp

@@ -177,13 +177,13 @@ struct OwnedKey {
   bool (*has)(vm::DriverId driver);
   std::string_view owner;
 };
-constexpr std::string_view kPanel = "a panel of lights (`ws2812`)";
+constexpr std::string_view kPanelPhrase = "a panel of lights (`ws2812`)";
 constexpr std::string_view kDrive = "a `differential_drive`";
 constexpr std::array kOwnedKeys = {
     OwnedKey{"pulse", vm::is_servo, "a servo (`servo`, `pca9685_servo`)"},
-    OwnedKey{"size", vm::shows_pictures_on_a_panel, kPanel},
-    OwnedKey{"zigzag", vm::shows_pictures_on_a_panel, kPanel},
-    OwnedKey{"color", vm::shows_pictures_on_a_panel, kPanel},
+    OwnedKey{"size", vm::shows_pictures_on_a_panel, kPanelPhrase},
+    OwnedKey{"zigzag", vm::shows_pictures_on_a_panel, kPanelPhrase},
+    OwnedKey{"color", vm::shows_pictures_on_a_panel, kPanelPhrase},
     OwnedKey{"brightness", vm::drives_panel,
              "a panel or strip of lights (`ws2812`, `ws2812_strip`)"},
     OwnedKey{"lights", vm::is_strip, "a strip of lights (`ws2812_strip`)"},

@@ -18,7 +18,6 @@ namespace {
 constexpr std::string_view kWordsKey = "words";
 constexpr const char* kElsewhere =
     "`\"on\": \"companion\"` lets a computer beside the robot listen, with its own microphone";
-constexpr int kStalePeriods = 5;  // of a companion's channels; the same as for sampled channels
 
 class AlgorithmReader {
 public:

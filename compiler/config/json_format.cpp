@@ -8,8 +8,8 @@
 namespace robosync::compiler::json {
 namespace {
 
-constexpr std::size_t kWidth = 130;  // columns
-constexpr std::size_t kIndent = 2;   // of the keys of the robot; its parts have twice that
+constexpr std::size_t kWidth = 130;     // columns
+constexpr std::size_t kJsonIndent = 2;  // of the keys of the robot; its parts have twice that
 
 bool is_container(const Value& value) {
   return value.kind == Kind::object || value.kind == Kind::array;
@@ -35,14 +35,14 @@ std::vector<Entry> entries_of(const Value& value) {
   return entries;
 }
 
-class Writer {
+class JsonWriter {
 public:
-  Writer(const SourceMap& sources, FileId file)
+  JsonWriter(const SourceMap& sources, FileId file)
       : sources_(sources), text_(sources.file(file).text()) {}
 
   std::string write(const Value& root) {
     if (root.kind == Kind::object && !root.members.empty())
-      one_a_line(root, kIndent);
+      one_a_line(root, kJsonIndent);
     else
       fill(root, 0);
     return out_ + "\n";
@@ -62,13 +62,13 @@ private:
       const bool last = i + 1 == entries.size();
       if (!columns.empty())
         out_ += row(*entry.value, columns);
-      else if (indent == kIndent && is_in_lines(*entry.value))
-        one_a_line(*entry.value, indent + kIndent);
+      else if (indent == kJsonIndent && is_in_lines(*entry.value))
+        one_a_line(*entry.value, indent + kJsonIndent);
       else
         fill(*entry.value, last ? 0 : 1);
       if (!last) out_ += ',';
     }
-    out_ += '\n' + std::string(indent - kIndent, ' ');
+    out_ += '\n' + std::string(indent - kJsonIndent, ' ');
     close(value);
   }
 
@@ -173,7 +173,7 @@ private:
 }  // namespace
 
 std::string formatted(const SourceMap& sources, FileId file, const Value& root) {
-  return Writer(sources, file).write(root);
+  return JsonWriter(sources, file).write(root);
 }
 
 }  // namespace robosync::compiler::json

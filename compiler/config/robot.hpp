@@ -17,6 +17,8 @@
 namespace robosync::compiler {
 
 constexpr std::size_t kMaxLabels = 255;  // of a channel
+constexpr int kStalePeriods =
+    5;  // a channel without "stale_after" is stale when it is silent for so many periods
 
 struct ChannelConfig {
   Spelled name;

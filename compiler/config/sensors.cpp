@@ -17,8 +17,6 @@ namespace robosync::compiler {
 
 namespace {
 
-constexpr int kStalePeriods = 5;
-
 // `value`, a raw count in thousandths, if one count is one `unit`.
 vm::Value count_in(vm::Value value, const Unit& unit) {
   constexpr unsigned kDecimals = 3;

@@ -11,7 +11,7 @@
 namespace robosync::compiler::explain {
 namespace {
 
-constexpr std::array kTexts = {
+constexpr std::array kCodeTexts = {
 #define EXPLAIN(code, meaning, wrong, mended) CodeText{Code::code, meaning, wrong, mended},
 #include "compiler/explain/codes.def"
 #undef EXPLAIN
@@ -30,7 +30,7 @@ std::string indented(std::string_view text) {
 }  // namespace
 
 std::span<const CodeText> code_texts() {
-  return kTexts;
+  return kCodeTexts;
 }
 
 std::optional<Code> find_code(std::string_view name) {
@@ -43,8 +43,8 @@ std::optional<Code> find_code(std::string_view name) {
 std::string code_text(Code code) {
   std::string text = fmt::format("{} ({}): {}\n", code_name(code), level_name(default_level(code)),
                                  code_title(code));
-  const auto* const found = std::ranges::find(kTexts, code, &CodeText::code);
-  if (found == kTexts.end()) return text;
+  const auto* const found = std::ranges::find(kCodeTexts, code, &CodeText::code);
+  if (found == kCodeTexts.end()) return text;
   text += fmt::format("\n{}\n", found->meaning);
   if (!found->wrong.empty()) text += "\nFor example:\n\n" + indented(found->wrong);
   if (!found->mended.empty()) text += "\nCorrect:\n\n" + indented(found->mended);

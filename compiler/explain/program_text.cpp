@@ -15,7 +15,7 @@
 namespace robosync::compiler::explain {
 namespace {
 
-constexpr std::size_t kIndent = 2;
+constexpr std::size_t kTextIndent = 2;
 
 // Readers who know how rules are evaluated make fewer mistakes.
 constexpr std::string_view kHowItWorks =
@@ -112,11 +112,12 @@ private:
     say(0, "\nWhat moves, as robot.json says:");
     for (const ActuatorConfig& actuator : robot_->actuators) {
       if (!actuator.moves()) continue;
-      say(kIndent, fmt::format("{}:{} In a halt it {}; when its response ends, it {}.",
-                               actuator.name.text, limits(actuator), state(actuator.safe, actuator),
-                               state(actuator.on_release, actuator)));
+      say(kTextIndent,
+          fmt::format("{}:{} In a halt it {}; when its response ends, it {}.", actuator.name.text,
+                      limits(actuator), state(actuator.safe, actuator),
+                      state(actuator.on_release, actuator)));
     }
-    say(kIndent,
+    say(kTextIndent,
         "A halt is a SAFETY rule, `rsc stop` or a fault. A SAFETY rule lets go as its RESUME "
         "says,\n"
         "  or, without one, when you upload a program; `rsc resume` lets go after the other two.");
@@ -211,19 +212,19 @@ private:
     say(0, fmt::format("\nCHECK {} ({}) puts {} into words:", node.name.text, place_of(span),
                        number(*node.operand)));
     for (const ast::Band& band : node.bands)
-      say(kIndent, fmt::format("{}: {}", band.label.text, range(band)));
-    if (node.bands.size() > 1) say(kIndent, "The first one from the top that fits counts.");
+      say(kTextIndent, fmt::format("{}: {}", band.label.text, range(band)));
+    if (node.bands.size() > 1) say(kTextIndent, "The first one from the top that fits counts.");
     if (node.margin) {
-      say(kIndent,
+      say(kTextIndent,
           fmt::format("It leaves one only when the value is {} past its limit{}, so that it "
                       "does not flicker.",
                       number(*node.margin),
                       node.bands.size() > 1 ? ", or when an earlier one fits" : ""));
     }
     if (node.smooth) {
-      say(kIndent, fmt::format("It uses the median of the readings of the last {}, so that a "
-                               "single wrong reading does not count.",
-                               number(*node.smooth)));
+      say(kTextIndent, fmt::format("It uses the median of the readings of the last {}, so that a "
+                                   "single wrong reading does not count.",
+                                   number(*node.smooth)));
     }
   }
 
@@ -231,18 +232,18 @@ private:
     const std::string limit = number(*node.value);
     say(0, fmt::format("\nLIMIT ({}):", place_of(span)));
     if (folded(node.channel.text) == "speed") {
-      say(kIndent, fmt::format("{} never moves faster than {}, whatever a rule asks for.",
-                               node.actuator.text, limit));
+      say(kTextIndent, fmt::format("{} never moves faster than {}, whatever a rule asks for.",
+                                   node.actuator.text, limit));
     } else {
-      say(kIndent, fmt::format("While {0} {1} is more than {2}, or is unknown, {0} "
-                               "is stopped.",
-                               node.actuator.text, node.channel.text, limit));
+      say(kTextIndent, fmt::format("While {0} {1} is more than {2}, or is unknown, {0} "
+                                   "is stopped.",
+                                   node.actuator.text, node.channel.text, limit));
     }
   }
 
   void tell(const ast::Safety& node, Span span) {
     say(0, fmt::format("\nSAFETY {} ({}), above all other rules:", node.name.text, place_of(span)));
-    text_ += safety_text(node, defines_, kIndent);
+    text_ += safety_text(node, defines_, kTextIndent);
   }
 
   // ---- behaviours
@@ -302,13 +303,13 @@ private:
   void tell_meetings(bool several_rules) {
     const Party& party = parties_.at(next_party_++);
     if (!party.actuators.empty()) {
-      say(kIndent,
+      say(kTextIndent,
           fmt::format("It uses {}.", list({party.actuators.begin(), party.actuators.end()})));
     }
     for (const std::string& line : meetings(party, parties_))
-      say(kIndent, line);
+      say(kTextIndent, line);
     if (several_rules && !party.actuators.empty()) {
-      say(kIndent,
+      say(kTextIndent,
           "Among its own rules, the later one interrupts the earlier one if both need the "
           "same actuator.");
     }
@@ -323,7 +324,7 @@ private:
       text_ += remembered(variable);
     for (const ast::Rule& rule : node.rules) {
       text_ += '\n';
-      text_ += rule_text(rule, place_of(rule.span), defines_, kIndent);
+      text_ += rule_text(rule, place_of(rule.span), defines_, kTextIndent);
     }
   }
 
@@ -334,7 +335,7 @@ private:
                                     : std::string("less important than everything with a priority "
                                                   "and than earlier rules without one")));
     tell_meetings(false);
-    text_ += rule_text(node, place_of(span), defines_, kIndent);
+    text_ += rule_text(node, place_of(span), defines_, kTextIndent);
   }
 
   void tell(const ast::Define& node, Span span) {
@@ -343,7 +344,7 @@ private:
       parameters.emplace_back(parameter.text);
     say(0, fmt::format("\nDEFINE {}{} ({}) means:", node.name.text,
                        parameters.empty() ? "" : " with " + list(parameters), place_of(span)));
-    text_ += statements(node.body, defines_, kIndent);
+    text_ += statements(node.body, defines_, kTextIndent);
   }
 
   Trees trees_;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kRuleIndent = 2;
 
-class RuleWriter {
+class RuleText {
 public:
-  RuleWriter(const Defines& defines, std::string_view place, std::size_t indent)
+  RuleText(const Defines& defines, std::string_view place, std::size_t indent)
       : defines_(defines), place_(place), indent_(indent) {}
 
   void write(const ast::WhenRule& rule) {
@@ -125,14 +125,14 @@ private:
 
 std::string rule_text(const ast::Rule& rule, std::string_view place, const Defines& defines,
                       std::size_t indent) {
-  RuleWriter writer(defines, place, indent);
+  RuleText writer(defines, place, indent);
   std::visit([&](const auto& node) { writer.write(node); }, rule.node);
   writer.write(rule.modifiers);
   return std::move(writer.text);
 }
 
 std::string safety_text(const ast::Safety& safety, const Defines& defines, std::size_t indent) {
-  RuleWriter writer(defines, "", indent);
+  RuleText writer(defines, "", indent);
   writer.write(safety);
   return std::move(writer.text);
 }

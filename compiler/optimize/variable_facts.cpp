@@ -20,16 +20,16 @@ constexpr unsigned kPatience = 3;     // changes before a growing range is widen
 constexpr unsigned kMaxChanges = 12;  // changes before it is widened to the variable's limits
 
 // The values that a response writes to a variable.
-struct Written {
+struct WrittenFacts {
   std::optional<Fact> fact;
   unsigned changes = 0;
 };
 
-struct Writer {  // a response and its writes
+struct WritingResponse {  // a response and its writes
   ir::Block* block = nullptr;
   bool once = false;
   bool safety = false;
-  std::vector<Written> writes{};  // by variable
+  std::vector<WrittenFacts> writes{};  // by variable
 };
 
 // The numbers of a program: growth often stops at one of them.
@@ -78,7 +78,7 @@ public:
         add(rule.else_response, false, false);
       }
     count_shifts();
-    for (const Writer& response : responses_)
+    for (const WritingResponse& response : responses_)
       add_numbers(*response.block, thresholds_);
   }
 
@@ -86,7 +86,7 @@ public:
     while (true) {
       VariableFacts anytime = without(nullptr);
       bool grew = false;
-      for (Writer& response : responses_)
+      for (WritingResponse& response : responses_)
         if (follow(response, anytime)) grew = true;
       if (!grew) return anytime;
     }
@@ -95,25 +95,25 @@ public:
 private:
   void add(ir::Block& block, bool start, bool safety) {
     if (block.empty()) return;
-    responses_.push_back(
-        {&block, start && !pauses(block), safety, std::vector<Written>(program_.variables.size())});
+    responses_.push_back({&block, start && !pauses(block), safety,
+                          std::vector<WrittenFacts>(program_.variables.size())});
   }
   void count_shifts();
-  bool follow(Writer& response, const VariableFacts& anytime);
-  [[nodiscard]] VariableFacts without(const Writer* response) const;
+  bool follow(WritingResponse& response, const VariableFacts& anytime);
+  [[nodiscard]] VariableFacts without(const WritingResponse* response) const;
   [[nodiscard]] Fact initial(std::size_t place) const;
   [[nodiscard]] Fact shifted(std::size_t place, const Fact& result, const Fact& difference) const;
 
   ir::Program& program_;
   const Robot& robot_;
-  std::vector<Writer> responses_;
+  std::vector<WritingResponse> responses_;
   Thresholds thresholds_;
   std::vector<std::int64_t> shifts_;  // statements that RAISE or LOWER each variable
 };
 
 void Prover::count_shifts() {
   shifts_.resize(program_.variables.size());
-  for (const Writer& response : responses_)
+  for (const WritingResponse& response : responses_)
     for_each_of<ir::Set>(std::as_const(*response.block), [&](const ir::Set& set) {
       if (set.relative) ++shifts_[set.variable];
     });
@@ -146,11 +146,11 @@ Fact Prover::shifted(std::size_t place, const Fact& result, const Fact& differen
 }
 
 // The facts that hold after all responses. Leaves out the writes of `response`, which runs once; null: leaves out none.
-VariableFacts Prover::without(const Writer* response) const {
+VariableFacts Prover::without(const WritingResponse* response) const {
   VariableFacts facts;
   for (std::size_t i = 0; i < program_.variables.size(); ++i) {
     Fact fact = initial(i);
-    for (const Writer& other : responses_) {
+    for (const WritingResponse& other : responses_) {
       const bool counts = &other != response || shifts_[i] > 0;
       if (counts && other.writes[i].fact) fact = either(fact, *other.writes[i].fact);
     }
@@ -161,7 +161,7 @@ VariableFacts Prover::without(const Writer* response) const {
 }
 
 // True if the response wrote more than before.
-bool Prover::follow(Writer& response, const VariableFacts& anytime) {
+bool Prover::follow(WritingResponse& response, const VariableFacts& anytime) {
   Flow flow(program_, robot_, anytime);
   const VariableFacts entry = response.once ? without(&response) : anytime;
   const WriteFacts found = flow.follow(*response.block, entry, !response.safety);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "compiler/sema/intervals.hpp"
 #include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
@@ -132,13 +133,8 @@ void lint_step(const Typed& value, const Typed& by, Diagnostics& diagnostics) {
 
 namespace {
 
-struct Interval {
-  std::int64_t low = vm::kValueMin, high = vm::kValueMax;  // both inclusive
-};
-using Ranges = std::vector<Interval>;
-
-Ranges both(const Ranges& a, const Ranges& b) {
-  Ranges result;
+Intervals both(const Intervals& a, const Intervals& b) {
+  Intervals result;
   for (const Interval& one : a)
     for (const Interval& other : b)
       if (std::max(one.low, other.low) <= std::min(one.high, other.high))
@@ -146,19 +142,7 @@ Ranges both(const Ranges& a, const Ranges& b) {
   return result;
 }
 
-Ranges without(Ranges left, const Ranges& taken) {
-  for (const Interval& hole : taken) {
-    Ranges rest;
-    for (const Interval& range : left) {
-      if (range.low < hole.low) rest.push_back({range.low, std::min(range.high, hole.low - 1)});
-      if (range.high > hole.high) rest.push_back({std::max(range.low, hole.high + 1), range.high});
-    }
-    left = std::move(rest);
-  }
-  return left;
-}
-
-Ranges together(Ranges a, const Ranges& b) {
+Intervals together(Intervals a, const Intervals& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
@@ -166,7 +150,7 @@ Ranges together(Ranges a, const Ranges& b) {
 // A condition on one value: the ranges in which it may be true, and those in which it must be true.
 struct Asked {
   const Expression* side = nullptr;
-  Ranges may, must;
+  Intervals may, must;
 };
 
 // Are they about the same value, with few enough ranges?
@@ -181,20 +165,20 @@ bool draws(const Expression& expression) {
          std::ranges::any_of(expression.operands, draws);
 }
 
-std::optional<Ranges> ranges_of(Operation comparison, std::int64_t number) {
+std::optional<Intervals> ranges_of(Operation comparison, std::int64_t number) {
   switch (comparison) {
     case Operation::less:
-      return Ranges{{vm::kValueMin, number - 1}};
+      return Intervals{{vm::kValueMin, number - 1}};
     case Operation::less_equal:
-      return Ranges{{vm::kValueMin, number}};
+      return Intervals{{vm::kValueMin, number}};
     case Operation::greater:
-      return Ranges{{number + 1, vm::kValueMax}};
+      return Intervals{{number + 1, vm::kValueMax}};
     case Operation::greater_equal:
-      return Ranges{{number, vm::kValueMax}};
+      return Intervals{{number, vm::kValueMax}};
     case Operation::equal:
-      return Ranges{{number, number}};
+      return Intervals{{number, number}};
     case Operation::not_equal:
-      return without({{}}, {{number, number}});
+      return without({{}}, Interval{number, number});
     default:
       return std::nullopt;
   }
@@ -259,10 +243,10 @@ void collect(Operation op, const Expression& condition, std::vector<Asked>& resu
 }
 
 // All possible values. A channel that learns its words may get new ones later.
-Ranges possible(const Expression& side, Names& names) {
+Intervals possible(const Expression& side, Names& names) {
   const auto of = [](const std::vector<std::string>& labels, std::int64_t low, std::int64_t high) {
-    if (labels.empty()) return Ranges{{low, high}};
-    Ranges words;
+    if (labels.empty()) return Intervals{{low, high}};
+    Intervals words;
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const auto word = static_cast<std::int64_t>(i) * vm::kScale;
       words.push_back({word, word});
@@ -286,8 +270,8 @@ std::string name_of(const Expression& side, Names& names) {
 }
 
 // The rest of `ranges` if all `parts` about this side are true (or false).
-Ranges left_by(const std::vector<Asked>& parts, const Expression& side, bool are_true,
-               Ranges ranges) {
+Intervals left_by(const std::vector<Asked>& parts, const Expression& side, bool are_true,
+                  Intervals ranges) {
   for (const Asked& part : parts) {
     if (*part.side != side || ranges.size() > kMostRanges) continue;
     ranges = are_true ? both(ranges, part.may) : without(std::move(ranges), part.must);
@@ -307,8 +291,8 @@ void lint_logic(ast::LogicOp op, const Expression& left, const Expression& right
   collect(operation, left, first);
   for (const Asked& part : second) {
     const Expression& side = *part.side;
-    const Ranges range = possible(side, names);
-    const Ranges by_first = left_by(first, side, all, range);
+    const Intervals range = possible(side, names);
+    const Intervals by_first = left_by(first, side, all, range);
     if (by_first.empty() || left_by(second, side, all, range).empty()) continue;  // reported before
     if (!left_by(second, side, all, by_first).empty()) continue;
     const std::string name = name_of(side, names);

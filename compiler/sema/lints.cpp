@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/ir/walk.hpp"
+#include "compiler/sema/intervals.hpp"
 #include "compiler/syntax/walk.hpp"
 #include "compiler/units/units.hpp"
 #include "vm/drivers.hpp"
@@ -150,21 +151,7 @@ void lint_start(const ast::Rule& rule, const ast::WhenRule& when, const Names& n
 
 namespace {
 
-struct Interval {
-  std::int64_t low = 0, high = 0;  // both inclusive
-};
-
-// `ranges` without `taken`.
-std::vector<Interval> without(const std::vector<Interval>& ranges, const Interval& taken) {
-  std::vector<Interval> left;
-  for (const Interval& range : ranges) {
-    if (range.low < taken.low) left.push_back({range.low, std::min(range.high, taken.low - 1)});
-    if (range.high > taken.high) left.push_back({std::max(range.low, taken.high + 1), range.high});
-  }
-  return left;
-}
-
-bool overlaps(const std::vector<Interval>& ranges, const Interval& wanted) {
+bool overlaps(const Intervals& ranges, const Interval& wanted) {
   return std::any_of(ranges.begin(), ranges.end(), [&](const Interval& range) {
     return range.low <= wanted.high && wanted.low <= range.high;
   });
@@ -197,7 +184,7 @@ void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& inp
                 Diagnostics& diagnostics) {
   const Unit& unit = input.unit != nullptr ? *input.unit : canonical_unit(vm::Dimension::number);
   lint_hold(node, check, input, diagnostics);
-  std::vector<Interval> left{{input.low, input.high}};
+  Intervals left{{input.low, input.high}};
   for (std::size_t i = 0; i < check.bands.size(); ++i) {
     const Interval band{check.bands[i].low, check.bands[i].high};
     if (!overlaps(left, band))
