@@ -52,7 +52,7 @@ MUTANTS = (
     Mutant("no limit of the rise of a wheel", GUARD, "rise == 0 ? wheel->target", "true ? wheel->target"),
     Mutant("a drive is owned on pins that the board does not drive", GUARD, "if (!policy::can_drive(drive, parameters, board_.pins())) return false;", ""),
     Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n    if (is_on_panel", "    if (is_on_panel"),
-    Mutant("a player is told twice at once", "runtime-m4/guard/output_guard.hpp", "- told) < gap;", "- told) == 0xFFFF;"),
+    Mutant("a player is told twice at once", "runtime-m4/guard/output_guard.hpp", "- told) < gap;", "- told) == 0xFFFF;", through=GUARD),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
            "if (!vm::drives_player(slot.driver)) return;"),
     Mutant("without a program a player plays on", GUARD, "say(ended_player_->pin, 0);",
