@@ -19,6 +19,7 @@
 #include "runtime-m4/policy/player.hpp"
 #include "runtime-m4/policy/rules.hpp"
 #include "runtime-m4/policy/threads.hpp"
+#include "runtime-m4/policy/travel.hpp"
 #include "vm/drivers.hpp"
 
 namespace robosync::analysis {
@@ -538,7 +539,7 @@ private:
       if ((commanded_ >> a & 1) == 0) continue;
       const policy::ActuatorCosts driver = policy::actuator_costs(image_, a);
       set_.interferences.push_back({std::string(image_.string(image_.actuators[a].name)),
-                                    instructions_in_ms(policy::kSetpointPeriodMs),
+                                    instructions_in_ms(policy::shortest_setpoint_ms(image_, a)),
                                     costs::kService + driver.advance + driver.start});
     }
   }

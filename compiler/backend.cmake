@@ -46,6 +46,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/devices.cpp
   config/drive.cpp
   config/encoder.cpp
+  config/wheel_encoders.cpp
   config/entries.cpp
   config/fields.cpp
   config/json_format.cpp

@@ -117,6 +117,8 @@ public:
   // Measures with `sampler` instead of the drivers. Before activate().
   // This makes it a simulation: its program does not wait for first readings.
   void measure_with(layers::Sampler& sampler) { sampler_ = &sampler; }
+  // What measures otherwise.
+  layers::Sampler& drivers() { return drivers_; }
 
   // The seed of the random numbers, which overrides that of the image. 0: the image's seed; if the image
   // has none, 1 in a simulation, and a new one each time on a board. Before activate().

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "vm/drivers.hpp"
 #include "vm/image.hpp"
@@ -23,10 +24,10 @@ inline constexpr std::array kSides = {Side::left, Side::right};
 struct DriveParameters {
   std::array<std::uint8_t, 4> pins;  // left forward, left backward, right forward, right backward
   std::array<std::uint8_t, 2> trim;  // percent of its power that each motor gets
-  std::uint16_t reserved;
-  Value speed;  // of the robot with full power, per second
-  Value track;  // the distance between the wheels
-  Value usual;  // speed of an order without AT
+  std::array<std::uint8_t, 2> encoders;  // the sensors of its wheels, plus 1; 0: it goes by timing
+  Value speed;                           // of the robot with full power, per second
+  Value track;                           // the distance between the wheels
+  Value usual;                           // speed of an order without AT
 };
 inline constexpr std::size_t kDriveValues = sizeof(DriveParameters) / sizeof(Value);
 using DriveValues = std::array<Value, kDriveValues>;
@@ -40,6 +41,48 @@ constexpr DriveParameters drive_of(const Value* values) {
 
 constexpr DriveValues values_of(const DriveParameters& parameters) {
   return std::bit_cast<DriveValues>(parameters);
+}
+
+constexpr bool has_encoders(const DriveParameters& parameters) {
+  return parameters.encoders[0] != 0;
+}
+
+// A drive of a verified image that goes by its encoders.
+constexpr bool is_counted_drive(const Image& image, std::size_t actuator) {
+  const Actuator& one = image.actuators[actuator];
+  return drives_wheels(one.driver) && has_encoders(drive_of(image.constants.data() + one.pin));
+}
+
+// The encoder of a wheel, of whose edges each is `above` / `below` of the wheel's way.
+struct WheelEncoder {
+  std::int32_t above;
+  std::uint16_t below;
+  std::uint8_t number;  // among the program's encoders
+  bool knows_direction;
+};
+using WheelEncoders = std::array<WheelEncoder, 2>;
+
+// Sensors and channels must have been checked. nullopt: it has no encoder there whose edges have a way.
+constexpr std::optional<WheelEncoder> encoder_of(const Image& image, const DriveParameters& drive,
+                                                 Side side) {
+  const unsigned place = drive.encoders[static_cast<std::size_t>(side)];
+  if (place == 0 || place > image.sensors.size()) return std::nullopt;
+  const Sensor& sensor = image.sensors[place - 1];
+  if (!counts_edges(sensor.driver)) return std::nullopt;
+  for (const Channel& channel : image.channels.subspan(sensor.first_channel, sensor.channel_count))
+    if (channel.input == kDistanceInput && channel.scale_num > 0)
+      return WheelEncoder{.above = channel.scale_num,
+                          .below = channel.scale_den,
+                          .number = static_cast<std::uint8_t>(encoder_number(image, place - 1)),
+                          .knows_direction = has_second_input(sensor)};
+  return std::nullopt;
+}
+
+// Of a drive with encoders, where there are no wheels (runtime-m4/policy/virtual_wheels.hpp): by how many percent the right one is
+// slower. Its `bus` has it.
+inline constexpr std::int8_t kMostDifference = 20;
+constexpr std::int8_t difference_of(const Actuator& drive) {
+  return static_cast<std::int8_t>(drive.bus);
 }
 
 // A motor of the drive, as if it were an actuator of its own.

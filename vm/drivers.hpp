@@ -253,6 +253,7 @@ inline constexpr std::uint16_t kMinRangingPeriodMs = 50;
 inline constexpr unsigned kMaxEncoders = 2;  // of a program
 inline constexpr unsigned kEdgesPerMs = 4;
 inline constexpr std::uint16_t kMostEncoderPeriodMs = 50;
+inline constexpr std::uint8_t kDistanceInput = 0;  // the input of the channel that counts edges
 inline constexpr unsigned kSpeedParts = 16;  // a count of speed is this part of an edge per second
 // Which of the program's encoders it is.
 constexpr unsigned encoder_number(const Image& image, std::size_t sensor) {

@@ -321,6 +321,18 @@ bool is_trim(std::uint8_t percent) {
   return percent > 0 && percent <= kFullTrim;
 }
 
+// It has two encoders, one for each wheel, or none.
+Refusal check_encoders(const Image& image, const Actuator& drive, const DriveParameters& has) {
+  if (!has_encoders(has))
+    return good_or(Refusal::bad_value, drive.bus == 0 && has.encoders[1] == 0);
+  for (const Side side : kSides)
+    if (!encoder_of(image, has, side)) return Refusal::bad_index;
+  const int difference = difference_of(drive);
+  return good_or(Refusal::bad_value, has.encoders[0] != has.encoders[1] &&
+                                         difference >= -kMostDifference &&
+                                         difference <= kMostDifference);
+}
+
 // Each of the four pins is an output of its own, and neither motor may go on in the safe state.
 Refusal check_drive(Walk& walk, const Actuator& drive, std::size_t index) {
   if (++walk.drives > kMaxDrives) return Refusal::too_many;
@@ -332,9 +344,9 @@ Refusal check_drive(Walk& walk, const Actuator& drive, std::size_t index) {
       if (has.pins[before] == has.pins[p]) return Refusal::shared_pin;
   }
   if (drive.safe == Release::hold) return Refusal::drives_on;
-  return good_or(Refusal::bad_value, drive.bus == 0 && has.reserved == 0 && is_trim(has.trim[0]) &&
-                                         is_trim(has.trim[1]) && has.speed > 0 && has.track > 0 &&
-                                         has.track <= kMostTrack && has.usual > 0);
+  const bool good = is_trim(has.trim[0]) && is_trim(has.trim[1]) && has.speed > 0 &&
+                    has.track > 0 && has.track <= kMostTrack && has.usual > 0;
+  return good ? check_encoders(walk.image, drive, has) : Refusal::bad_value;
 }
 
 bool has_display(const Image& image, const Actuator& face) {

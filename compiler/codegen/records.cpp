@@ -177,6 +177,10 @@ void RecordMaker::actuator(std::size_t place) {
     record.speed_limit = config.panel->color;
   }
   if (config.drive) records_.drive = config.drive;
+  if (config.drive && config.encoders)
+    for (std::size_t side = 0; side < config.encoders->size(); ++side)
+      records_.drive->encoders[side] = static_cast<std::uint8_t>(
+          std::ranges::find(sensor_places_, (*config.encoders)[side]) - sensor_places_.begin() + 1);
   if (gets_power(config)) keep_power(record);
   if (config.driver == vm::DriverId::virtual_actuator &&
       keeps_its_place(config, record.speed_limit)) {

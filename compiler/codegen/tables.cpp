@@ -35,12 +35,23 @@ Tables::Tables(const ir::Program& program, const Robot& robot, Diagnostics& diag
   for (const ir::Check& check : program.checks)
     use(check.input);
   for_each_rule(program, [this](const ir::Rule& rule) { use(rule); });
+  use_encoders(robot);
   use_inputs(robot);
   check_counts(program, diagnostics);
   number(channels_);
   number(actuators_);
   number(groups_);
   number(motion_groups_);
+}
+
+// Adds the distances that the encoders of a drive count.
+void Tables::use_encoders(const Robot& robot) {
+  for (const auto& [place, number] : actuators_) {
+    const auto& encoders = robot.actuators[place].encoders;
+    if (!encoders) continue;
+    for (const std::size_t sensor : *encoders)
+      channels_.emplace(ChannelRef{sensor, *distance_of(robot.sensors[sensor])}, 0);
+  }
 }
 
 // Adds the inputs of the algorithms whose outputs are used.

@@ -60,6 +60,7 @@ public:
   [[nodiscard]] std::uint32_t verbs_of(const ActuatorConfig& actuator, std::size_t place) const;
 
 private:
+  void use_encoders(const Robot& robot);
   void use_inputs(const Robot& robot);
   void use(const ir::Rule& rule);
   void use(const ir::Block& block);

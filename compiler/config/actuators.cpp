@@ -191,7 +191,9 @@ constexpr std::array kOwnedKeys = {
     OwnedKey{"right", vm::drives_wheels, kDrive},
     OwnedKey{"speed", vm::drives_wheels, kDrive},
     OwnedKey{"track", vm::drives_wheels, kDrive},
-    OwnedKey{"trim", vm::drives_wheels, kDrive}};
+    OwnedKey{"trim", vm::drives_wheels, kDrive},
+    OwnedKey{"encoders", vm::drives_wheels, kDrive},
+    OwnedKey{"simulated_difference", vm::drives_wheels, kDrive}};
 
 void report_keys_of_others(const Fields& fields, vm::DriverId driver, Diagnostics& diagnostics) {
   for (const OwnedKey& owned : kOwnedKeys) {
@@ -278,7 +280,8 @@ void check_voltage(const Fields& fields, const WiringType& type, const Device& d
 
 // How it is wired, by its type.
 void read_place(Fields& fields, const WiringType& type, const Board::Part* part,
-                WiringReader& wiring, ActuatorConfig& actuator, Diagnostics& diagnostics) {
+                std::span<const SensorConfig> sensors, WiringReader& wiring,
+                ActuatorConfig& actuator, Diagnostics& diagnostics) {
   if (type.name != "VIRTUAL" && vm::drives_channel(actuator.driver)) {
     const ChipWiring place = wiring.read_chip(fields);
     actuator.chip = place.chip;
@@ -290,6 +293,7 @@ void read_place(Fields& fields, const WiringType& type, const Board::Part* part,
   } else if (type.name == "PWM" && vm::drives_wheels(actuator.driver)) {
     wiring.take_drive(fields, type);
     actuator.drive = read_drive(fields, wiring, actuator, diagnostics);
+    read_wheel_encoders(fields, sensors, actuator, diagnostics);
   } else {
     const Wiring place = wiring.read_actuator(fields, type, part, actuator.driver);
     actuator.bus = place.bus;
@@ -320,8 +324,9 @@ const Device* meant_drive(const Fields& fields, Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringReader& wiring,
-                                            Diagnostics& diagnostics) {
+std::optional<ActuatorConfig> read_actuator(const json::Value& value,
+                                            std::span<const SensorConfig> sensors,
+                                            WiringReader& wiring, Diagnostics& diagnostics) {
   Fields fields(value, Object::actuator, diagnostics);
   const auto name = read_name(fields, "an actuator", diagnostics);
   const Device* const meant = meant_drive(fields, diagnostics);
@@ -339,7 +344,7 @@ std::optional<ActuatorConfig> read_actuator(const json::Value& value, WiringRead
   actuator.range_span = name->span;
   actuator.limit_span = name->span;
   if (known == nullptr) return actuator;
-  if (type != nullptr) read_place(fields, *type, part, wiring, actuator, diagnostics);
+  if (type != nullptr) read_place(fields, *type, part, sensors, wiring, actuator, diagnostics);
   if (type != nullptr) check_voltage(fields, *type, device, wiring, diagnostics);
   actuator.panel = read_lights(fields, device.actuator.driver, diagnostics);
   report_keys_of_others(fields, device.actuator.driver, diagnostics);

@@ -18,7 +18,9 @@ namespace robosync::compiler {
 [[nodiscard]] std::optional<SensorConfig> read_sensor(const json::Value& value,
                                                       WiringReader& wiring,
                                                       Diagnostics& diagnostics);
+// `sensors`: those of the robot.
 [[nodiscard]] std::optional<ActuatorConfig> read_actuator(const json::Value& value,
+                                                          std::span<const SensorConfig> sensors,
                                                           WiringReader& wiring,
                                                           Diagnostics& diagnostics);
 
@@ -42,6 +44,11 @@ void read_pictures(const json::Value& value, Robot& robot, Diagnostics& diagnost
                                                             const ActuatorConfig& actuator,
                                                             Diagnostics& diagnostics);
 inline constexpr vm::Value kLeastTrim = 50;  // percent; a larger difference is a fault of the robot
+
+// Reads the encoders of its wheels, if it has any, and how a simulation turns these. If they are wrong, the drive is without.
+void read_wheel_encoders(const Fields& fields, std::span<const SensorConfig> sensors,
+                         ActuatorConfig& actuator, Diagnostics& diagnostics);
+inline constexpr std::int8_t kUsualDifference = 4;  // percent
 
 // Reads what an edge of an encoder is worth, and checks that a board can count its edges at the greatest speed. `channels`: those of
 // robot.json, or null.

@@ -21,6 +21,14 @@ void ChannelConfig::add_label(std::string label) {
   max = static_cast<vm::Value>(labels.size() - 1) * vm::kScale;
 }
 
+std::optional<std::size_t> distance_of(const SensorConfig& encoder) {
+  const auto& channels = encoder.channels;
+  const auto* const found =
+      find_in(channels, [](const ChannelConfig& one) { return one.input == vm::kDistanceInput; });
+  if (found == nullptr) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.data());
+}
+
 bool ActuatorConfig::shows_numbers() const {
   return to_unit != nullptr && to_unit->dimension == vm::Dimension::number;
 }

@@ -2,6 +2,7 @@
 // image. Values are thousandths of the canonical unit (vm/value.hpp) throughout.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -77,6 +78,9 @@ struct SensorConfig {
   std::string taught_by;  // … and the program of a companion computer that teaches them
 };
 
+// The channel of an encoder that says how far its wheel has come; nullopt: it has none.
+[[nodiscard]] std::optional<std::size_t> distance_of(const SensorConfig& encoder);
+
 enum class Texts : std::uint8_t {
   none,    // the verb takes no string
   listed,  // one of the actuator's sounds
@@ -138,6 +142,7 @@ struct ActuatorConfig {
   std::optional<ServoChip> chip;
   std::optional<PanelConfig> panel;
   std::optional<vm::DriveParameters> drive;
+  std::optional<std::array<std::size_t, 2>> encoders;  // of the drive's wheels: in Robot::sensors
   vm::Release on_release = vm::Release::hold;
   vm::Release safe = vm::Release::hold;
   const Unit* to_unit = nullptr;  // of TO and BY; null: it has no position

@@ -318,7 +318,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     if (sensor) robot.sensors.push_back(std::move(*sensor));
   });
   for_each_entry(fields, "actuators", diagnostics, [&](const json::Value& entry) {
-    auto actuator = read_actuator(entry, wiring, diagnostics);
+    auto actuator = read_actuator(entry, robot.sensors, wiring, diagnostics);
     if (actuator) robot.actuators.push_back(std::move(*actuator));
   });
   if (const auto* pictures = fields.find("pictures")) read_pictures(*pictures, robot, diagnostics);

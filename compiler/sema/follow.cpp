@@ -186,7 +186,10 @@ std::optional<Followed> Commands::follow_by(std::size_t actuator, const std::vec
   if (config.drive) {
     diagnostics.report(Code::E0512, config.name.shown() + " cannot follow")
         .label(verb.span)
-        .label(config.name.span, "it drives by timing: nothing measures where it is", false)
+        .label(config.name.span,
+               config.encoders ? "it drives one distance after the other"
+                               : "it drives by timing: nothing measures where it is",
+               false)
         .helps(
             "drive a distance with `DRIVE`; or wire each wheel as a `motor`, whose power can "
             "follow");

@@ -43,7 +43,7 @@ Topic topic_of(const Json& event) {
   if (is({"input", "stale"}))
     return {"sensors/" + part_of(event, "sensor") + "/" + part_of(event, "channel")};
   if (kind == "set") return {"variables/" + part_of(event, "variable")};
-  if (is({"command", "done", "cancel", "halt", "release", "overrun"}))
+  if (is({"command", "done", "cancel", "halt", "release", "overrun", "blocked"}))
     return {"actuators/" + part_of(event, "actuator")};
   if (is({"trip", "resume"})) return {"safety/" + rule_of(event)};
   if (kind == "priority") return {"priorities/" + part_of(event, "behavior")};

@@ -101,6 +101,12 @@ std::string verb_names(const vm::Image& image, std::uint32_t mask) {
   return fmt::format("{}", fmt::join(verbs, " "));
 }
 
+std::string encoders_text(const vm::DriveParameters& drive, int difference) {
+  if (!vm::has_encoders(drive)) return "";
+  return fmt::format(", encoders: sensors {} and {}, virtual wheels differ by {} %",
+                     drive.encoders[0] - 1, drive.encoders[1] - 1, difference);
+}
+
 std::string drive_text(const vm::DriveParameters& drive) {
   return fmt::format(
       "pins {} and {} (left, {} %), {} and {} (right, {} %), {} with full power, track {}, usually "
@@ -112,7 +118,9 @@ std::string drive_text(const vm::DriveParameters& drive) {
 std::string place_of(const vm::Image& image, const vm::Actuator& actuator) {
   if (vm::drives_wheels(actuator.driver) &&
       actuator.pin + vm::kDriveValues <= image.constants.size())
-    return drive_text(vm::drive_of(image.constants.data() + actuator.pin));
+    return drive_text(vm::drive_of(image.constants.data() + actuator.pin)) +
+           encoders_text(vm::drive_of(image.constants.data() + actuator.pin),
+                         vm::difference_of(actuator));
   if (vm::drives_channel(actuator.driver))
     return fmt::format("channel {} of sensor {}", actuator.pin, actuator.bus);
   if (vm::drives_screen(actuator.driver)) return fmt::format("sensor {}", actuator.bus);

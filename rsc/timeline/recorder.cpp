@@ -79,6 +79,7 @@ bool is_message(EventKind kind) {
     case EventKind::zero_divide:
     case EventKind::silent:
     case EventKind::answers:
+    case EventKind::blocked:
       return true;
     default:
       return false;

@@ -91,7 +91,7 @@ void Lanes::see(const TraceLine& line) {
     end_all();
     begin(LaneGroup::robot, kProgram, fmt::format("program {}", line.program));
   } else if (is_one_of(kind, {"log", "alert", "fault", "deadline", "lowered", "overrun",
-                              "zero_divide", "silent", "answers"})) {
+                              "zero_divide", "silent", "answers", "blocked"})) {
     mark(LaneGroup::robot, kind, message_text(line));
   } else if (line.event.contains("rule")) {
     see_rule(line, kind);

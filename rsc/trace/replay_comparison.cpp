@@ -201,8 +201,8 @@ private:
 }  // namespace
 
 bool is_compared(std::string_view kind) {
-  constexpr std::string_view kOthers[] = {"activated", "input",   "stale",  "fault",
-                                          "deadline",  "lowered", "silent", "answers"};
+  constexpr std::string_view kOthers[] = {"activated", "input",  "stale",   "fault",  "deadline",
+                                          "lowered",   "silent", "answers", "blocked"};
   return std::ranges::find(kOthers, kind) == std::end(kOthers);
 }
 

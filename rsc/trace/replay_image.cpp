@@ -10,6 +10,7 @@
 
 #include "rsc/json.hpp"
 #include "rsc/trace/replay_event.hpp"
+#include "vm/drive.hpp"
 #include "vm/drivers.hpp"
 #include "vm/identity.hpp"
 #include "vm/verifier.hpp"
@@ -58,12 +59,23 @@ void begin_as_kept(std::vector<std::byte>& bytes, const vm::Image& image,
         });
 }
 
+// Is it an encoder that a drive goes by? The image may be damaged.
+bool is_of_drive(const vm::Image& image, std::size_t sensor) {
+  return std::ranges::any_of(image.actuators, [&](const vm::Actuator& one) {
+    if (!vm::drives_wheels(one.driver) || one.pin + vm::kDriveValues > image.constants.size())
+      return false;
+    const auto encoders = vm::drive_of(image.constants.data() + one.pin).encoders;
+    return std::ranges::find(encoders, sensor + 1) != encoders.end();
+  });
+}
+
 }  // namespace
 
 std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes) {
   vm::Image image;
   if (!vm::view_image(bytes, image) || !vm::is_named(bytes, {})) return bytes;
-  for (std::size_t i = 0; i < image.sensors.size(); ++i)
+  for (std::size_t i = 0; i < image.sensors.size(); ++i) {
+    if (is_of_drive(image, i)) continue;
     change(bytes, image.sensors, i, [](vm::Sensor& sensor) {
       if (vm::is_served(sensor.driver)) return;
       sensor.driver = vm::DriverId::virtual_sensor;
@@ -71,6 +83,7 @@ std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes) {
       sensor.first_input = 0;
       sensor.room = 0;
     });
+  }
   vm::seal(bytes);
   return bytes;
 }

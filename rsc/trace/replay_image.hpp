@@ -13,7 +13,8 @@
 
 namespace robosync::tool {
 
-// The program with all sensors fed, so that it needs neither drivers nor algorithms. A damaged image is returned unchanged.
+// The program with all sensors fed, so that it needs neither drivers nor algorithms; but the encoders of a drive stay encoders, as
+// it goes by them. A damaged image is returned unchanged.
 [[nodiscard]] std::vector<std::byte> with_fed_sensors(std::vector<std::byte> bytes);
 
 // Channels pass every reading unchanged, and only the `silent` ones can become stale.

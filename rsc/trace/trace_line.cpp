@@ -95,6 +95,8 @@ std::string actuator_words(const EventReader& reader) {
       return fmt::format("{} is told to give up", actuator);
     case EventKind::overrun:
       return fmt::format("{} drops a command: too many wait", actuator);
+    case EventKind::blocked:
+      return fmt::format("{} is blocked: one of its wheels gives no edges, or too many", actuator);
     case EventKind::halt:
       return fmt::format("{} is halted", actuator);
     case EventKind::release:

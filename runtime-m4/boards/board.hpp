@@ -9,8 +9,10 @@
 #include "link/messages.hpp"
 #include "runtime-m4/boards/panel_output.hpp"
 #include "runtime-m4/boards/store.hpp"
+#include "runtime-m4/policy/encoder_count.hpp"
 #include "runtime-m4/policy/pins.hpp"
 #include "runtime-m4/policy/player.hpp"
+#include "runtime-m4/policy/virtual_wheels.hpp"
 
 namespace robosync::boards {
 
@@ -119,8 +121,13 @@ public:
                           unsigned /*most*/, Turned& /*turned*/) {
     return false;
   }
+  // What take_edges() has counted, with the edges since its last call; zeros before its first call. Allows no more of them.
+  virtual policy::EncoderCount edges_so_far(unsigned /*number*/) { return {}; }
   // Only the output guard calls this.
   virtual void end_edges(unsigned /*number*/) {}
+  // The wheels of a drive on boards that have no real ones, else null: the output guard counts what they turn besides the edges
+  // above. Only it uses them.
+  virtual policy::VirtualWheels* wheels() { return nullptr; }
   // The voltage of an analog input (pins()), 0 to kAnalogFull, which is the supply voltage. False when the converter does not
   // answer, or for any other pin. Takes tens of microseconds; at most twice as long when there is no answer.
   virtual bool analog(std::uint16_t /*pin*/, std::uint16_t& /*voltage*/) { return false; }

@@ -1,5 +1,6 @@
-// Two motors that drive a robot, by timing: nothing measures how far it went. Its speed is proportional to the power, up to
-// its speed with full power; a wheel's way and speed give the time, and then both motors go off.
+// Two motors that drive a robot. Its speed is proportional to the power, up to its speed with full power. By timing, nothing measures
+// how far it went: a wheel's way and speed give the time, and then both motors go off. With encoders each wheel goes on until it has
+// counted its way (policy/travel.hpp), and only what is ordered for a time ends by timing.
 //
 //   TO, BY          straight, at AT or the usual speed, or in OVER. Its position is the way since the program began, without turns
 //   BY of a play    turns by that angle: each wheel goes along an arc around the middle between them
@@ -28,6 +29,7 @@ struct Course {
   kernel::Duration length = 0;
   vm::Value speed = 0;
   bool back = false;
+  bool for_a_time = false;  // it ends by timing
 };
 
 constexpr std::int64_t kFarthest = INT32_MAX;
@@ -59,7 +61,11 @@ Course along(std::int64_t way, const Order& order, vm::Value speed, vm::Value mo
 
 Course for_a_time(kernel::Duration length, bool back, vm::Value speed) {
   const std::int64_t way = static_cast<std::int64_t>(length / 1000) * speed / 1000;
-  return {.way = bounded(back ? -way : way), .length = length, .speed = speed, .back = back};
+  return {.way = bounded(back ? -way : way),
+          .length = length,
+          .speed = speed,
+          .back = back,
+          .for_a_time = true};
 }
 
 kernel::Duration time_of(const Order& order) {
@@ -117,21 +123,80 @@ struct Powers {
   return {course.back ? -left : left, course.back != turns ? -right : right};
 }
 
+// The position stays within the range, which the robot may leave.
+vm::Value in_range(const Device& device, std::int64_t position) {
+  return static_cast<vm::Value>(
+      std::clamp<std::int64_t>(position, device.wiring.min, device.wiring.max));
+}
+
+// Where its wheels had come to when they were last looked at, or where it is by timing.
+[[gnu::noinline]] void stand_here(const Device& device, kernel::Time now) {
+  guard::CountedDrive* const counted = device.outputs.counted_drive();
+  if (counted == nullptr || !counted->travel.is_on())
+    return way::stop(device, vm::Release::hold, now);
+  const std::int64_t way = counted->heading * counted->travel.way();
+  counted->travel.end();
+  way::stand(device, in_range(device, device.state.motion.from + way), now);
+}
+
 void stop(const Device& device, kernel::Time now) {
-  way::stop(device, vm::Release::hold, now);
+  stand_here(device, now);
   device.drive_wheels(0, 0, now);
 }
 
-// The position stays within the range, which the robot may leave.
 [[gnu::noinline]] void go(const Device& device, const Course& course, bool turns,
                           kernel::Time now) {
   const vm::Value from = device.state.motion.at(now);
   const std::int64_t way = turns ? 0 : course.way;
-  const std::int64_t to =
-      std::clamp<std::int64_t>(from + way, device.wiring.min, device.wiring.max);
   device.state.motion = {
-      .from = from, .to = static_cast<vm::Value>(to), .begin = now, .length = course.length};
+      .from = from, .to = in_range(device, from + way), .begin = now, .length = course.length};
   device.state.until = now + course.length;
+}
+
+std::uint32_t in_ms(kernel::Time time) {
+  return static_cast<std::uint32_t>(time / 1000);
+}
+
+// Gives each wheel its part of the power. Returns when to look again.
+kernel::Time go_on(const Device& device, const guard::CountedDrive& counted, kernel::Time now) {
+  const policy::Travel& travel = counted.travel;
+  device.drive_wheels(counted.pulses[0] * travel.share(vm::Side::left) / 100,
+                      counted.pulses[1] * travel.share(vm::Side::right) / 100, now);
+  return std::min(now + kernel::milliseconds(travel.next_look_ms(in_ms(now))), device.state.until);
+}
+
+// After go(), for a drive with encoders, which have just been counted: each wheel goes until it has counted its way. Returns when to
+// look. Not inline, and calls nothing that drives: the stack has no room for both.
+[[gnu::noinline]] kernel::Time set_out(const Device& device, guard::CountedDrive& counted,
+                                       const Course& course, Powers& powers, bool turns,
+                                       kernel::Time now) {
+  const std::int64_t size = course.back ? -std::int64_t{course.way} : course.way;
+  const std::array back = {powers.left < 0 && counted.encoders[0].knows_direction,
+                           powers.right < 0 && counted.encoders[1].knows_direction};
+  counted.pulses = {static_cast<std::int16_t>(powers.left),
+                    static_cast<std::int16_t>(powers.right)};
+  counted.heading = static_cast<std::int8_t>(turns ? 0 : course.back ? -1 : 1);
+  counted.travel.begin(counted.encoders, counted.counts, back,
+                       course.for_a_time ? policy::Travel::kNoTarget : size, course.speed,
+                       in_ms(now));
+  if (counted.travel.has_arrived(vm::Side::left)) powers.left = 0;
+  if (counted.travel.has_arrived(vm::Side::right)) powers.right = 0;
+  if (!course.for_a_time) device.state.until = kernel::kForever;
+  return std::min(now + kernel::milliseconds(counted.travel.next_look_ms(in_ms(now))),
+                  device.state.until);
+}
+
+// A movement takes a frame at least, whatever its wheels do: response times are worked out with that (analysis/).
+[[gnu::noinline]] kernel::Time look(const Device& device, guard::CountedDrive& counted,
+                                    kernel::Time now) {
+  using State = policy::Travel::State;
+  device.outputs.count_wheels(now);
+  const State state = counted.travel.look(counted.counts, in_ms(now));
+  const bool is_early = state == State::arrived && now < device.state.motion.begin + way::kFrame;
+  if ((state == State::going || is_early) && now < device.state.until)
+    return go_on(device, counted, now);
+  stop(device, now);
+  return state == State::blocked ? kBlocked : kDone;
 }
 
 }  // namespace
@@ -140,7 +205,7 @@ kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
   const vm::Value* const parameters = device.outputs.drive_parameters();
   if (parameters == nullptr) return kDone;
   if (!device.state.placed) way::stand(device, 0, now);
-  way::stop(device, vm::Release::hold, now);
+  stand_here(device, now);
   Course course;
   if (order.action != vm::Action::stop)
     course = course_of(device, order, parameters, device.state.motion.at(now));
@@ -149,13 +214,20 @@ kernel::Time start(const Device& device, const Order& order, kernel::Time now) {
     return kDone;
   }
   const bool turns = order.action == vm::Action::play;
-  const Powers powers = powers_of(course, turns, parameters);
+  Powers powers = powers_of(course, turns, parameters);
   go(device, course, turns, now);
+  kernel::Time wake = device.state.until;
+  if (guard::CountedDrive* const counted = device.outputs.counted_drive()) {
+    device.outputs.count_wheels(now);
+    wake = set_out(device, *counted, course, powers, turns, now);
+  }
   device.drive_wheels(powers.left, powers.right, now);
-  return device.state.until;
+  return wake;
 }
 
 kernel::Time advance(const Device& device, kernel::Time now) {
+  guard::CountedDrive* const counted = device.outputs.counted_drive();
+  if (counted != nullptr && counted->travel.is_on()) return look(device, *counted, now);
   if (now < device.state.until) return device.state.until;
   stop(device, now);
   return kDone;

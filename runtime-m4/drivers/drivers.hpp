@@ -72,9 +72,12 @@ struct Device {
 };
 
 inline constexpr kernel::Time kDone = 0;
+// No time: those are multiples of kernel::kTick.
+inline constexpr kernel::Time kBlocked = 1;
 
 // start begins an order; advance continues it. Both return when they want to be called again,
-// or kDone. release sets what the actuator does once nothing commands it, from any state.
+// or kDone; advance also returns kBlocked, when what it did cannot go on and has been ended. release sets what the actuator does
+// once nothing commands it, from any state.
 using StartFunction = kernel::Time (*)(const Device& device, const Order& order, kernel::Time now);
 using AdvanceFunction = kernel::Time (*)(const Device& device, kernel::Time now);
 using ReleaseFunction = void (*)(const Device& device, vm::Release how, kernel::Time now);

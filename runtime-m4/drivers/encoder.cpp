@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "runtime-m4/drivers/drivers.hpp"
-#include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::drivers {
 namespace {
@@ -24,11 +23,11 @@ bool encoder::read(boards::Board& /*board*/, const vm::Sensor& /*sensor*/,
   return false;
 }
 
-void Encoders::take(boards::Board& board, const vm::Sensor& sensor, unsigned number,
-                    std::uint32_t now, Wheel& wheel) {
+void Encoders::take(guard::OutputGuard& outputs, const vm::Sensor& sensor, unsigned number,
+                    kernel::Time time, Wheel& wheel) {
+  const auto now = static_cast<std::uint32_t>(time);
   boards::Turned turned{};
-  const unsigned most = policy::most_edges(sensor.period_ms);
-  wheel.known = board.take_edges(number, sensor.address, sensor.bus, most, turned);
+  wheel.known = outputs.take_edges(sensor, number, time, turned);
   if (turned.begun)  // it stands
     wheel = {.last = now - static_cast<std::uint32_t>(kStandsUs), .known = wheel.known};
   const std::uint32_t last = now - turned.ago;
@@ -45,12 +44,12 @@ void Encoders::take(boards::Board& board, const vm::Sensor& sensor, unsigned num
 }
 
 // Not inlined: it would enlarge the stack frame of every driver's sample.
-[[gnu::noinline]] bool Encoders::sample(boards::Board& board, const vm::Sensor& sensor,
+[[gnu::noinline]] bool Encoders::sample(guard::OutputGuard& outputs, const vm::Sensor& sensor,
                                         unsigned number, bool is_first, std::uint8_t input,
                                         kernel::Time now, std::int32_t& raw) {
   if (number >= wheels_.size()) return false;
   Wheel& wheel = wheels_[number];
-  if (is_first) take(board, sensor, number, static_cast<std::uint32_t>(now), wheel);
+  if (is_first) take(outputs, sensor, number, now, wheel);
   if (!wheel.known || input > 1) return false;
   raw = input == 0 ? wheel.edges : wheel.speed;
   return true;

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 
-#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
 #include "vm/drivers.hpp"
 #include "vm/image.hpp"
@@ -21,7 +21,7 @@ public:
 
   // A sample of one channel of the program's encoder `number`, in counts of its input. All channels are those of the edges that the
   // first one takes. False if edges were lost since the last sample: there were more than the board counts.  [sensor's thread]
-  bool sample(boards::Board& board, const vm::Sensor& sensor, unsigned number, bool is_first,
+  bool sample(guard::OutputGuard& outputs, const vm::Sensor& sensor, unsigned number, bool is_first,
               std::uint8_t input, kernel::Time now, std::int32_t& raw);
 
 private:
@@ -31,8 +31,8 @@ private:
     std::uint32_t last = 0;  // when the last edge was, in microseconds
     bool known = false;
   };
-  static void take(boards::Board& board, const vm::Sensor& sensor, unsigned number,
-                   std::uint32_t now, Wheel& wheel);
+  static void take(guard::OutputGuard& outputs, const vm::Sensor& sensor, unsigned number,
+                   kernel::Time time, Wheel& wheel);
 
   std::array<Wheel, vm::kMaxEncoders> wheels_{};
 };

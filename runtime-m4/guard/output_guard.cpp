@@ -111,6 +111,8 @@ void OutputGuard::switch_off(const vm::Image* next) {
   }
   lights_ = speaker_ = on_chips_ = drive_ = 0;
   drive_parameters_ = nullptr;
+  counts_wheels_ = false;
+  if (policy::VirtualWheels* const wheels = board_.wheels()) wheels->end_all();
 }
 
 void OutputGuard::end(const Slot& slot, const vm::Image* next) {
@@ -238,6 +240,7 @@ bool OutputGuard::own_wheels(unsigned actuator, const vm::Image& image) {
   right_wheel_ = slot_of(vm::motor_of(drive, parameters, vm::Side::right));
   drive_ = bit(actuator);
   drive_parameters_ = image.constants.data() + drive.pin;
+  own_encoders(image, drive, parameters);
   apart_ |= bit(actuator);
   return true;
 }
@@ -351,6 +354,7 @@ void OutputGuard::put_wheels(unsigned actuator, kernel::Time now) {
     if (wheel->pulse != wheel->target) lagging_ |= bit(actuator);
     board_.pwm_write(wheel->pin, wheel->pulse);
   }
+  if (counts_wheels_) turn_virtual_wheels(actuator, static_cast<std::uint32_t>(now));
 }
 
 void OutputGuard::go_on(kernel::Time now) {
@@ -361,14 +365,13 @@ void OutputGuard::go_on(kernel::Time now) {
       tell(actuator, now);
     } else {
       const auto lock = kernel_.lock();
-      put(actuator, now);
+      is_drive(actuator) ? put_wheels(actuator, now) : put(actuator, now);
     }
   }
 }
 
-// Moves the pulse as far towards its target as the time since the last write allows.
+// Moves the pulse as far towards its target as the time since the last write allows. Not for a drive.
 [[gnu::noinline]] void OutputGuard::put(unsigned actuator, kernel::Time now) {
-  if (is_drive(actuator)) return put_wheels(actuator, now);
   Slot& slot = slots_[actuator];
   const policy::PinLimit& limit = limits_[slot.limit];
   slot.pulse = next_pulse(slot, limit.rise, limit.shortest != 0, now);

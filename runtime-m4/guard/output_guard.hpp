@@ -54,10 +54,21 @@
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/features.hpp"
 #include "runtime-m4/kernel/kernel.hpp"
+#include "runtime-m4/policy/travel.hpp"
+#include "vm/drive.hpp"
 #include "vm/drivers.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::guard {
+
+// The encoders of a drive, and its driver's progress by them. Only the driver uses it; reset with each program.
+struct CountedDrive {
+  vm::WheelEncoders encoders{};
+  policy::Travel travel;
+  policy::EncoderCounts counts{};
+  std::array<std::int16_t, 2> pulses{};  // of its wheels, without what travel takes from them
+  std::int8_t heading = 0;               // how its way counts: 1 or -1; 0: it turns
+};
 
 class OutputGuard {
 public:
@@ -85,6 +96,14 @@ public:
                     kernel::Time now);
   // The parameters of the drive, in the running program's image; null: it has no drive.
   [[nodiscard]] const vm::Value* drive_parameters() const { return drive_parameters_; }
+  // Null: the running program has no drive with encoders.
+  [[nodiscard]] CountedDrive* counted_drive() { return counts_wheels_ ? &counted_drive_ : nullptr; }
+  // Puts into it what these encoders have counted.
+  void count_wheels(kernel::Time now);
+  // What the program's encoder `number`, which is this sensor, has counted (boards::Board::take_edges()), with what its virtual
+  // wheel has turned.
+  [[nodiscard]] bool take_edges(const vm::Sensor& sensor, unsigned number, kernel::Time time,
+                                boards::Turned& turned);
   // The pulses of an actuator of the running program, a servo, at the ends of its range.
   [[nodiscard]] vm::ServoPulses pulses_of(unsigned actuator) const {
     return vm::pulses_of(traits_, actuator);
@@ -194,6 +213,9 @@ private:
   [[nodiscard]] bool is_drive(unsigned actuator) const;
   void aim_wheel(Slot& wheel, std::int32_t pulse_us, kernel::Time now);
   void put_wheels(unsigned actuator, kernel::Time now);
+  void own_encoders(const vm::Image& image, const vm::Actuator& drive,
+                    const vm::DriveParameters& parameters);
+  void turn_virtual_wheels(unsigned actuator, std::uint32_t now);
   void own_told(unsigned actuator, const vm::Actuator& wiring);
   void tell(unsigned actuator, kernel::Time now);
   void say(std::uint16_t player, std::uint16_t sound);
@@ -253,6 +275,8 @@ private:
   Mask drive_ = 0;      // has two motors: its slot is the left one's
   Slot right_wheel_{};  // of the drive
   const vm::Value* drive_parameters_ = nullptr;
+  bool counts_wheels_ = false;
+  CountedDrive counted_drive_;
   Mask limp_ = 0;             // on chips, off until their next orders
   bool lights_stay_ = false;  // on in the safe state
   std::uint8_t chip_count_ = 0;

@@ -400,8 +400,21 @@ void ControlLayer::begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake
 kernel::Time ControlLayer::go_on(Unit& unit) {
   const drivers::Driver& driver = drivers::driver(wiring(unit).driver);
   kernel::Time wake = is_halted(unit) ? 0 : driver.advance(device(unit), kernel_.now());
+  if (wake == drivers::kBlocked) return give_up(unit);
   if (wake == drivers::kDone && unit.performance.is_on()) wake = next_key(unit, kernel_.now());
   return keep_at(unit, wake, trace_.now());
+}
+
+// What waits behind it would begin where it has not come to.
+[[gnu::noinline]] kernel::Time ControlLayer::give_up(Unit& unit) {
+  if (is_halted(unit)) return keep_at(unit, drivers::kDone, trace_.now());
+  unit.performance.end();
+  unit.busy = false;
+  trace_.emit(EventKind::blocked, trace_.now(), unit.actuator);
+  trace_.emit(EventKind::cancel, trace_.now(), unit.actuator);
+  const auto lock = kernel_.lock();
+  pool_.clear(unit.queue);
+  return kernel::kForever;
 }
 
 // Continues the MOTION under way: to its next key, or to its end. A driver that has already arrived

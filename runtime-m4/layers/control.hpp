@@ -124,6 +124,7 @@ private:
   kernel::Time start_driver(Unit& unit, const QueuedOrder& command);
   kernel::Time start_performance(Unit& unit, const drivers::Order& order);
   kernel::Time go_on(Unit& unit);
+  [[gnu::cold]] kernel::Time give_up(Unit& unit);
   kernel::Time next_key(Unit& unit, kernel::Time now);
   kernel::Time keep_at(Unit& unit, kernel::Time wake, const Stamp& stamp);
   void drop_staged(ActuatorMask actuators);

@@ -32,6 +32,7 @@ target_sources(robosync_runtime PRIVATE
   layers/triggers.cpp
   layers/variables.cpp
   layers/workspace.cpp
+  guard/counted_drive.cpp
   guard/displays.cpp
   guard/output_guard.cpp
   guard/sensor_pins.cpp

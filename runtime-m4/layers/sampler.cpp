@@ -44,7 +44,7 @@ bool DriverSampler::sample(const vm::Image& image, std::uint8_t channel, vm::Val
   const vm::Channel& wiring = image.channels[channel];
   const vm::Sensor& sensor = image.sensors[wiring.sensor];
   std::int32_t raw = 0;
-  if (!encoders_.sample(board_, sensor, vm::encoder_number(image, wiring.sensor),
+  if (!encoders_.sample(outputs_, sensor, vm::encoder_number(image, wiring.sensor),
                         channel == sensor.first_channel, wiring.input, kernel_.now(), raw))
     return false;
   value = scaled(raw, wiring);

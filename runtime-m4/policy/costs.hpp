@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "runtime-m4/policy/threads.hpp"
+#include "vm/drive.hpp"
 #include "vm/drivers.hpp"
 #include "vm/image.hpp"
 
@@ -147,7 +148,7 @@ constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {
   return {};
 }
 
-// … of an actuator of `image`, with its limit of acceleration if it has one.
+// … of an actuator of `image`, with its limit of acceleration or its encoders if it has them.
 constexpr ActuatorCosts actuator_costs(const vm::Image& image, std::size_t actuator) {
   ActuatorCosts costs = actuator_costs(image.actuators[actuator].driver);
   if (vm::is_servo(image.actuators[actuator].driver)) {  // it looks for its pulses among the traits
@@ -155,6 +156,10 @@ constexpr ActuatorCosts actuator_costs(const vm::Image& image, std::size_t actua
     costs.start += look;
     costs.advance += look;
     costs.release += look;
+  }
+  if (vm::is_counted_drive(image, actuator)) {
+    costs.start += costs::kWheelsBegin;
+    costs.advance += costs::kWheelsSeen;
   }
   if (image.acceleration_of(actuator) == 0) return costs;
   costs.start += costs::kRampBegins;

@@ -1,8 +1,9 @@
 // The host as a board: PWM pins that remember their last pulse, inputs that are never read (a scenario says what sensors
-// measure), no bus, no line, a watchdog that only counts. It takes programs for all boards, so every pin may be an input, and
-// every bus exists.
+// measure), but for the encoders of a drive, whose wheels it has (policy/virtual_wheels.hpp); no bus, no line, a watchdog that only
+// counts. It takes programs for all boards, so every pin may be an input, and every bus exists.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 
@@ -24,6 +25,10 @@ public:
   bool input(std::uint16_t) const override { return false; }
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override { pulses_[pin] = pulse_us; }
   std::uint32_t pwm_read(std::uint16_t pin) const override;
+  bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
+                  boards::Turned& turned) override;
+  void end_edges(unsigned number) override { begun_[number] = false; }
+  policy::VirtualWheels* wheels() override { return &wheels_; }
 
   std::size_t link_write(std::span<const std::byte> bytes) override { return bytes.size(); }
   std::size_t link_read(std::span<std::byte>) override { return 0; }
@@ -48,6 +53,8 @@ private:
                                               .selects = kAny};
 
   std::map<std::uint16_t, std::uint32_t> pulses_;
+  policy::VirtualWheels wheels_;
+  std::array<bool, vm::kMaxEncoders> begun_{};
   std::uint64_t kicks_ = 0;
 };
 

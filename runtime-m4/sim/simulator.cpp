@@ -20,17 +20,20 @@
 namespace robosync::sim {
 namespace {
 
-// Feeds by channel: what each one measures from which time on.
+// Feeds by channel: what each one measures from which time on. An encoder of a drive that is not fed is turned by its wheel.
 class HeldValues final : public layers::Sampler {
 public:
-  explicit HeldValues(const kernel::Kernel& kernel) : kernel_(kernel) {}
+  HeldValues(const kernel::Kernel& kernel, layers::Sampler& drivers)
+      : kernel_(kernel), drivers_(drivers) {}
 
   void hold(std::uint8_t channel, kernel::Time from, vm::Value value) {
     values_[channel][from] = {value, false};
   }
 
-  bool sample(const vm::Image&, std::uint8_t channel, vm::Value& value) override {
+  bool sample(const vm::Image& image, std::uint8_t channel, vm::Value& value) override {
     auto& history = values_[channel];
+    if (history.empty() && vm::counts_edges(image.sensors[image.channels[channel].sensor].driver))
+      return drivers_.sample(image, channel, value);
     const auto after = history.upper_bound(kernel_.now());
     if (after == history.begin()) return false;
     Held& held = std::prev(after)->second;
@@ -53,6 +56,7 @@ private:
   };
 
   const kernel::Kernel& kernel_;
+  layers::Sampler& drivers_;
   std::map<std::uint8_t, std::map<kernel::Time, Held>> values_;
 };
 
@@ -77,7 +81,7 @@ struct Simulator::Impl {
       : events(std::move(sink)),
         arena(memory),
         runtime(kernel, board, events, arena.bytes(), arena.board()),
-        held(kernel) {
+        held(kernel, runtime.drivers()) {
     runtime.measure_with(held);
   }
 

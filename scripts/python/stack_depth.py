@@ -14,7 +14,7 @@ import sys
 # first line that matches the caller counts.
 BOARD = r"boards::(\w+::)?Board::"
 PANEL = r"boards::(PanelSignal<.*>|PanelOutput)::(begin|show|end)\("
-OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound|say|panel)\(|" + PANEL
+OUTPUTS = BOARD + r"(pwm_write|pwm_read|pins|enable|show|sound|say|panel|wheels)\(|" + PANEL
 TWO_BLOCKS = BOARD + r"i2c_read_two\("
 INPUTS = BOARD + r"(i2c_(?!read_two)\w+|input|measure)\("
 STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
@@ -33,8 +33,9 @@ CALLED_BY_POINTER = (
     (r"layers::DriverSampler::", r"drivers::\w+::read\(|" + INPUTS + "|" + OUTPUTS),
     (r"layers::AlgorithmLayer::|algorithms::", MODULE),
     (r"guard::OutputGuard::(halt_chips|switch_chips?_off)", BOARD + r"enable\("),
-    (r"guard::OutputGuard::(put|put_wheels|change_pin|turn|shut|settle)$", BOARD + r"pwm_(read|write)\("),
+    (r"guard::OutputGuard::(put|put_wheels|change_pin|turn|turn_virtual_wheels|shut|settle)$", BOARD + r"(pwm_(read|write)|wheels)\("),
     (r"guard::OutputGuard::(tell|say)$", BOARD + r"(say|panel)\(|" + PANEL),
+    (r"guard::OutputGuard::(count_wheels|take_edges)$", BOARD + r"(edges_so_far|take_edges|wheels)\("),
     (r"guard::OutputGuard::measured_by", BOARD + r"pins\("),
     (r"guard::", OUTPUTS),
     (r"drivers::Device::show\(", BOARD + r"show\("),

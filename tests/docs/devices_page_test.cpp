@@ -206,7 +206,14 @@ std::string wiring_keys(const Device& device) {
            row({"`trim`",
                 fmt::format("`left`, `right`: each {}% to {}% of the power", kLeastTrim,
                             vm::kFullTrim),
-                "100% for both"});
+                "100% for both"}) +
+           row({"`encoders`", "the names of two encoders: of the left wheel, of the right wheel",
+                "none: it goes by timing"}) +
+           row({"`simulated_difference`",
+                fmt::format("with `encoders`: how much slower the right wheel is where the wheels "
+                            "are virtual, -{0}% to {0}%",
+                            int{vm::kMostDifference}),
+                fmt::format("{}%", int{kUsualDifference})});
   if (vm::is_on_spi(driver_of(device)))
     rows += row({"`pin`", "the board's pin that is wired to the part's select input", "required"});
   else if (vm::has_two_pins(driver_of(device)))

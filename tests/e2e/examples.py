@@ -11,8 +11,8 @@ MOST_COUNTED = 8  # more than an example distinguishes
 sys.path.insert(0, str(ROOT / "tests/generators/programs"))
 
 import on_board  # noqa: E402
-from board import NAME  # noqa: E402
-from on_board import fed, without_parts  # noqa: E402
+from board import NAME, REFERENCE  # noqa: E402
+from on_board import by_timing, fed, turned, without_parts  # noqa: E402
 from stimuli import Reading  # noqa: E402
 
 
@@ -25,7 +25,11 @@ def config(folder):
     example's, that board's parts are replaced by virtual actuators, too."""
     robot = on_board.read(folder / "robot.json")
     robot = without_parts(robot, ("sensors",) if robot.get("board") == NAME else ("sensors", "actuators"))
+    if NAME != REFERENCE:
+        by_timing(robot)  # nothing turns its wheels
     for sensor in robot["sensors"]:
+        if sensor["name"] in turned(robot):
+            continue
         if sensor.get("type") != "VIRTUAL":
             sensor.update(fed(sensor))
         for key in set(sensor) - {"name", "channels"}:

@@ -26,6 +26,7 @@ class Mutant(NamedTuple):
     is_there: str
     instead: str
     unseen: str = ""  # why no test can notice
+    through: str = ""  # of a header: the source that is compiled with it
 
 
 class Suite(NamedTuple):
@@ -54,11 +55,13 @@ def compile_mutant(suite, mutant, work):
     text = (ROOT / mutant.file).read_text()
     if text.count(mutant.is_there) != 1:
         raise LookupError(f"{mutant.file} does not have `{mutant.is_there}` once: bring the mutant up to date")
-    changed = work / Path(mutant.file).name
+    changed = work / "changed" / mutant.file
+    changed.parent.mkdir(parents=True)
     changed.write_text(text.replace(mutant.is_there, mutant.instead))
-    words, unity = unity_of(suite, mutant.file, work)
+    words, unity = unity_of(suite, mutant.through or mutant.file, work)
     source, target = work / "unity.cpp", work / "mutant.o"
     source.write_text(unity.read_text().replace(str(ROOT / mutant.file), str(changed)))
+    words.insert(2, f"-I{work / 'changed'}")  # for a header, which is found there first
     words[words.index("-o") + 1] = str(target)
     words[words.index("-c") + 1] = str(source)
     subprocess.run([*words, "-O1", "-g0", "-Wno-error", "-w"], cwd=HOST, check=True)

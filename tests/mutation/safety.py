@@ -5,9 +5,11 @@ import sys
 
 from changes import Mutant, Suite, run
 
-TESTS = "[#guard_test],[#differential_drive_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
+TESTS = "[#guard_test],[#differential_drive_test],[#counted_drive_test],[#travel_test],[#outputs_test],[#safety_test],[#stop_test],[#faults_test],[#analog_input_test],[#pca9685_test],[#player_test],[#ssd1306_test],[#ws2812_test]"
 GUARD, RULES = "runtime-m4/guard/output_guard.cpp", "runtime-m4/safety/safety_rules.cpp"
 READS = "runtime-m4/guard/sensor_pins.cpp"
+TRAVEL, DRIVE = "runtime-m4/policy/travel.hpp", "runtime-m4/drivers/differential_drive.cpp"
+COUNTED = "runtime-m4/guard/counted_drive.cpp"
 MAILBOX, REGION = "runtime-m4/layers/mailbox.cpp", "runtime-m4/layers/safety_region.cpp"
 MONITOR, CONTROL, RUNTIME = "runtime-m4/safety/monitor.cpp", "runtime-m4/layers/control.cpp", "runtime-m4/runtime.cpp"
 
@@ -51,8 +53,47 @@ MUTANTS = (
            "static_cast<std::uint16_t>(second ? 0 - length : length)"),
     Mutant("no limit of the rise of a wheel", GUARD, "rise == 0 ? wheel->target", "true ? wheel->target"),
     Mutant("a drive is owned on pins that the board does not drive", GUARD, "if (!policy::can_drive(drive, parameters, board_.pins())) return false;", ""),
+    Mutant("a wheel that gives no edge is driven on", TRAVEL, "if (now_ms - wheel.made_at > patience_ms(wheel)) return State::blocked;", "",
+           through=DRIVE),
+    Mutant("a wheel whose edges are lost is driven on", TRAVEL, "if (counted[side].losses != wheel.losses) return State::blocked;", "",
+           through=DRIVE),
+    Mutant("a wheel that rocks counts as one that goes", TRAVEL, "  if (made <= wheel.made) return;\n", "  if (made == wheel.made) return;\n",
+           through=DRIVE),
+    Mutant("a wheel that has arrived is driven on", TRAVEL, "if (has_arrived(wheel)) return 0;", "", through=DRIVE),
+    Mutant("the wheel that is behind gets less", TRAVEL, "way_of(wheel) - way_of(other)", "way_of(other) - way_of(wheel)", through=DRIVE),
+    Mutant("a wheel goes on past the edge nearest to its target", TRAVEL, "encoder.above / 2) / encoder.above", "encoder.above) / encoder.above",
+           through=DRIVE),
+    Mutant("an encoder that counts backward is not known to", TRAVEL, "wheel.back ? 0 - passed : passed", "passed", through=DRIVE),
+    Mutant("the drive is looked at late", TRAVEL, "soonest = std::min(soonest, takes > passed ? takes - passed : 0);", "", through=DRIVE),
+    Mutant("who slept through an edge is blocked no sooner", TRAVEL, "wheel.made_at = now_ms;", "wheel.made_at += 0;", through=DRIVE),
+    Mutant("the drive does not count its encoders when it looks", DRIVE, "  device.outputs.count_wheels(now);\n  const State state", "  const State state"),
+    Mutant("a movement begins with what was counted long ago", DRIVE, "    device.outputs.count_wheels(now);\n    wake =", "    wake ="),
+    Mutant("a movement without a target ends where it began", DRIVE, "course.for_a_time ? policy::Travel::kNoTarget : size", "size"),
+    Mutant("a wheel that is there already is driven", DRIVE, "if (counted.travel.has_arrived(vm::Side::left)) powers.left = 0;", ""),
+    Mutant("the other wheel that is there already is driven", DRIVE, "if (counted.travel.has_arrived(vm::Side::right)) powers.right = 0;", ""),
+    Mutant("a movement that counts ends by timing, too", DRIVE, "if (!course.for_a_time) device.state.until = kernel::kForever;", ""),
+    Mutant("what is ordered for a time never ends", DRIVE, "(state == State::going || is_early) && now < device.state.until", "(state == State::going || is_early)"),
+    Mutant("a stopped movement is still under way", DRIVE, "  counted->travel.end();\n", ""),
+    Mutant("a movement is done before its frame is over", DRIVE, "state == State::going || is_early", "state == State::going"),
+    Mutant("a drive that stops forgets how far it came", DRIVE, "counted->heading * counted->travel.way()", "0 * counted->travel.way()"),
+    Mutant("the encoders of a drive are those of its other wheels", COUNTED, "counted_drive_.encoders[side] = *encoder;",
+           "counted_drive_.encoders[1 - side] = *encoder;"),
+    Mutant("virtual wheels turn no edges for the drive", COUNTED, "      counts[side].edges += wheels", "      counts[side].edges += 0 * wheels"),
+    Mutant("virtual wheels turn no edges for their sensors", COUNTED, "turned.edges += wheels", "turned.edges += 0 * wheels"),
+    Mutant("a sensor does not know when a virtual wheel had its last edge", COUNTED, "  turned.ago = wheels->ago(number, now);\n", ""),
+    Mutant("a virtual wheel whose encoder knows no direction turns back", COUNTED, "slot.second && encoder.knows_direction", "slot.second"),
+    Mutant("a virtual wheel that turns back turns forward", COUNTED, "back ? -pulse : pulse", "pulse"),
+    Mutant("the right virtual wheel is as fast as the left one", COUNTED, "side == 0 ? 0 : vm::difference_of(drive)", "0"),
+    Mutant("a halt lets the virtual wheels turn on", GUARD, "if (counts_wheels_) turn_virtual_wheels(", "if (counts_wheels_ && right_wheel_.target != 0) turn_virtual_wheels("),
+    Mutant("the next program has the wheels of the last one", GUARD, "if (policy::VirtualWheels* const wheels = board_.wheels()) wheels->end_all();", ""),
+    Mutant("a program without encoders counts those of the last one", GUARD, "  counts_wheels_ = false;\n", ""),
+    Mutant("a blocked drive is not reported", CONTROL, "  trace_.emit(EventKind::blocked, trace_.now(), unit.actuator);\n", ""),
+    Mutant("a blocked drive counts as done", CONTROL, "if (wake == drivers::kBlocked) return give_up(unit);", "if (wake == drivers::kBlocked) wake = drivers::kDone;"),
+    Mutant("what waits behind a blocked movement is begun", CONTROL, "  const auto lock = kernel_.lock();\n  pool_.clear(unit.queue);\n  return kernel::kForever;",
+           "  return kernel::kForever;"),
+    Mutant("a blocked drive runs on", DRIVE, "  stop(device, now);\n  return state == State::blocked", "  return state == State::blocked"),
     Mutant("a halt lets a player play on", GUARD, "    slot.target = 0;\n    if (is_on_panel", "    if (is_on_panel"),
-    Mutant("a player is told twice at once", "runtime-m4/guard/output_guard.hpp", "- told) < gap;", "- told) == 0xFFFF;"),
+    Mutant("a player is told twice at once", "runtime-m4/guard/output_guard.hpp", "- told) < gap;", "- told) == 0xFFFF;", through=GUARD),
     Mutant("who is halted may play", GUARD, "if (!is_free(actuator) || !vm::drives_player(slot.driver)) return;",
            "if (!vm::drives_player(slot.driver)) return;"),
     Mutant("without a program a player plays on", GUARD, "say(ended_player_->pin, 0);",

@@ -357,6 +357,7 @@ TEST_CASE("every event of a trace has a topic, and no name makes one of another 
   CHECK(tool::topic_of({{"event", "trip"}, {"rule", 1}, {"line", 7}}).name == "safety/line 7");
   CHECK_FALSE(tool::topic_of({{"event", "deadline"}, {"thread", "x"}}).retain);
   CHECK(tool::topic_of({{"event", "command"}}).name == "actuators/?");
+  CHECK(tool::topic_of({{"event", "blocked"}, {"actuator", "base"}}).name == "actuators/base");
   CHECK(tool::reading_of("feed/a/B", "20cm") == "a.B=20cm");
   CHECK(tool::reading_of("feed/a/B", "2.5") == "a.B=2.5");
   CHECK(tool::reading_of("feed/a/B", "\"hello\"") == "a.B=hello");

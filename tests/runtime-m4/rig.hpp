@@ -88,6 +88,9 @@ public:
                   boards::Turned& turned) override {
     return edges_of && edges_of(number, a, b, most, turned);
   }
+  policy::EncoderCount edges_so_far(unsigned number) override {
+    return count_of ? count_of(number) : policy::EncoderCount{};
+  }
   void end_edges(unsigned number) override { ended_edges.push_back(number); }
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override {
     const auto found = voltage_of ? voltage_of(pin) : std::nullopt;
@@ -162,6 +165,7 @@ public:
   std::function<bool(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
                      boards::Turned& turned)>
       edges_of;
+  std::function<policy::EncoderCount(unsigned number)> count_of;
   std::vector<unsigned> ended_edges;  // all
   std::function<std::optional<std::uint16_t>(std::uint16_t pin)> voltage_of;
   std::function<bool(boards::SoundBlock)> sound_of;

@@ -179,6 +179,8 @@ std::string what(const link::Event& event, const vm::Image& image) {
       return "lowered";
     case EventKind::silent:
       return "silent " + device();
+    case EventKind::blocked:
+      return "blocked " + actuator();
     case EventKind::answers:
       return "answers " + device();
   }

@@ -12,7 +12,7 @@ import rsc
 
 EXAMPLES = rsc.ROOT / "examples"
 MARKS = {"lose": "denied"} | {kind: kind for kind in (
-    "log", "alert", "fault", "deadline", "lowered", "overrun", "zero_divide", "silent", "answers")}
+    "log", "alert", "fault", "deadline", "lowered", "overrun", "zero_divide", "silent", "answers", "blocked")}
 PROFILE = tempfile.TemporaryDirectory()  # of the browser, which takes longer to make one than to show a page
 # Two SAFETY rules that are tripped at once, the second for shorter; and a message that is neither LOG nor ALERT.
 TRIPPED_TWICE = """SAFETY long

@@ -17,7 +17,7 @@ import on_board
 import rsc
 import stimuli
 from board import FAST, FIRMWARE, REAL_TIME, Board
-from on_board import fed, without_parts
+from on_board import fed, turned, without_parts
 from paths import counting, feed, run, wait
 from timing import examples
 
@@ -374,7 +374,7 @@ class ActuatorDrivers(unittest.TestCase):
     WIRED["pca9685_servo"] = (CHIP, WIRED["servo"][1])
     WIRED["ssd1306_face"] = (DISPLAY, ["SHOW a0 happy", "SHOW a0 sad FOR 50ms", "BLINK a0 3 TIMES OVER 133ms", "BLINK a0 700 TIMES OVER 36000s"])
 
-    def calls(self, wiring, order, *more):
+    def calls(self, wiring, order, *more, sensors=()):
         """{call: [instructions]}; what a call calls of its own driver counts with it."""
         known = [(name.split("(")[0].split("::"), at) for name, at in counting.symbols(paths.FIRMWARE).items()]
         drivers = {at: words[-1] for words, at in known
@@ -382,6 +382,7 @@ class ActuatorDrivers(unittest.TestCase):
         others = [at for words, at in known if {"ControlLayer", "Trace", "Kernel"} & set(words)]
         marks = {f"{at:#x}": at for at in {*drivers, *others}}
         config = paths.robot() | {"actuators": [{"name": "a0", **wiring}]}
+        config["sensors"] = [*config["sensors"], *sensors]
         text = behavior(order) + "".join(more) + behavior("STOP a0", "s c0 < 8", priority=95)
         orders = [feed(10), wait()] + [step for value in (90, 10, 95, 20, 99, 5, 90) for step in (feed(value), wait(130))]
         measured = run(text, orders, config, marks.items())
@@ -423,6 +424,25 @@ class ActuatorDrivers(unittest.TestCase):
                     most[call] = max(most[call], count - said[call])
         self.assertLessEqual(costs["kRampBegins"], LOOSEST * max(most["start"], most["advance"]) + SLACK)
         self.assertLessEqual(costs["kOnRamp"], LOOSEST * most["release"] + SLACK)
+
+    ENCODERS = [{"name": name, "type": "GPIO", "device": "encoder", "pin": pin, "pulses_per_turn": 499, "wheel": "65mm",
+                 "channels": {"DISTANCE": {}}} for name, pin in (("l", 42), ("r", 43))]
+
+    def test_a_drive_with_encoders(self):
+        """What they add to the calls of a drive; a release takes no longer with them."""
+        print()
+        costs, said = paths.costs(), paths.actuator_drivers()["differential_drive"]
+        wiring = self.DRIVE | {"encoders": ["l", "r"], "simulated_difference": "7%"}
+        measured = {}
+        for order in self.WIRED["differential_drive"][1]:
+            for call, counts in self.calls(wiring, order, sensors=self.ENCODERS).items():
+                measured[call] = max([measured.get(call, 0), *counts])
+        print(f"  differential_drive with encoders: {measured}")
+        self.assertGreaterEqual(said["release"], measured["release"])
+        for call, name in (("start", "kWheelsBegin"), ("advance", "kWheelsSeen")):
+            with self.subTest(call):
+                self.assertGreaterEqual(said[call] + costs[name], measured[call])
+                self.assertLessEqual(said[call] + costs[name], LOOSEST * measured[call] + SLACK)
 
     def test_every_driver(self):
         print()
@@ -632,7 +652,8 @@ class Paths(unittest.TestCase):
 
     def check(self, program, folder):
         wiring = without_parts(on_board.read(program.with_suffix(".json")))
-        wiring["sensors"] = [sensor if sensor["type"] == "VIRTUAL" else fed(sensor) for sensor in wiring["sensors"]]
+        wiring["sensors"] = [sensor if sensor["type"] == "VIRTUAL" or sensor["name"] in turned(wiring) else fed(sensor)
+                             for sensor in wiring["sensors"]]
         config, image = folder / "robot.json", folder / "p.rsb"
         config.write_text(json.dumps(wiring))
         paths.compiled(program, config, image)

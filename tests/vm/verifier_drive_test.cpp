@@ -26,7 +26,7 @@ void add_drive(ImageBuilder& image, std::size_t actuator, DriveParameters parame
 
 constexpr DriveParameters kDrive{.pins = {20, 21, 22, 23},
                                  .trim = {100, 50},
-                                 .reserved = 0,
+                                 .encoders = {0, 0},
                                  .speed = 40 * kScale,
                                  .track = kMostTrack,
                                  .usual = 1};
@@ -70,7 +70,8 @@ TEST_CASE("a drive of two motors") {
   }
   refused(Refusal::bad_value, [](auto& drive, auto&) { drive.trim[0] = 0; });
   refused(Refusal::bad_value, [](auto& drive, auto&) { drive.trim[1] = 101; });
-  refused(Refusal::bad_value, [](auto& drive, auto&) { drive.reserved = 1; });
+  refused(Refusal::bad_index, [](auto& drive, auto&) { drive.encoders = {1, 2}; });  // not encoders
+  refused(Refusal::bad_value, [](auto& drive, auto&) { drive.encoders[1] = 1; });
   refused(Refusal::bad_value, [](auto& drive, auto&) { drive.speed = 0; });
   refused(Refusal::bad_value, [](auto& drive, auto&) { drive.track = 0; });
   refused(Refusal::bad_value, [](auto& drive, auto&) { drive.track = kMostTrack + 1; });
@@ -95,6 +96,64 @@ TEST_CASE("a drive of two motors") {
         add_drive(i, 1, other);
       },
       {Refusal::too_many, Section::actuators, 1});
+}
+
+TEST_CASE("a drive with encoders") {
+  const auto with_encoders = [](ImageBuilder& image, auto wrong) {
+    for (const std::size_t s : {std::size_t{0}, std::size_t{1}}) {
+      Sensor& sensor = image.sensors[s];
+      sensor.driver = DriverId::encoder;
+      sensor.bus = kNoSecondPin;
+      sensor.address = static_cast<std::uint16_t>(30 + s);
+      sensor.period_ms = 20;
+      Channel& channel = image.channels[sensor.first_channel];
+      channel.input = kDistanceInput;
+      channel.scale_num = 20'420;
+      channel.scale_den = 40;
+    }
+    image.channels[robot::touch_force].input = 1;
+    DriveParameters parameters = kDrive;
+    parameters.encoders = {2, 1};
+    wrong(parameters, image);
+    add_drive(image, 1, parameters);
+  };
+  ImageBuilder good = robot::make();
+  with_encoders(good, [](auto&, auto&) {});
+  good.actuators[1].bus = static_cast<std::uint8_t>(-kMostDifference);
+  check_accepted(good);
+  const auto refused = [&](Refusal refusal, auto wrong) {
+    check_refused([&](ImageBuilder& i) { with_encoders(i, wrong); },
+                  {refusal, Section::actuators, 1});
+  };
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+    INFO(side);
+    refused(Refusal::bad_index, [&](auto& drive, auto& image) {
+      drive.encoders[side] = static_cast<std::uint8_t>(image.sensors.size() + 1);
+    });
+    refused(Refusal::bad_index, [&](auto& drive, auto&) { drive.encoders[side] = UINT8_MAX; });
+    refused(Refusal::bad_value,
+            [&](auto& drive, auto&) { drive.encoders[side] = drive.encoders[1 - side]; });
+    refused(side == 0 ? Refusal::bad_value : Refusal::bad_index,
+            [&](auto& drive, auto&) { drive.encoders[side] = 0; });
+    refused(Refusal::bad_index, [&](auto&, auto& image) {
+      image.channels[image.sensors[side].first_channel].input = 1;
+    });
+    refused(Refusal::bad_index, [&](auto&, auto& image) {
+      image.channels[image.sensors[side].first_channel].scale_num = 0;
+    });
+    refused(Refusal::bad_index, [&](auto&, auto& image) {
+      image.channels[image.sensors[side].first_channel].scale_num = -1;
+    });
+    refused(Refusal::bad_index,
+            [&](auto&, auto& image) { image.sensors[side].driver = DriverId::virtual_sensor; });
+  }
+  for (const int difference : {kMostDifference + 1, -kMostDifference - 1})
+    check_refused(
+        [&](ImageBuilder& i) {
+          with_encoders(i, [](auto&, auto&) {});
+          i.actuators[1].bus = static_cast<std::uint8_t>(difference);
+        },
+        {Refusal::bad_value, Section::actuators, 1});
 }
 
 }  // namespace verifier_drive_test

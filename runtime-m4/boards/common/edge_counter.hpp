@@ -29,14 +29,23 @@ public:
   // One edge or several, after which pin A has this level; `ahead`: they go forward, as B is not as A is. `now` is a counter that
   // counts up. False: there were too many, and the board ignores the next ones.
   bool edge(bool a, bool ahead, std::uint32_t now) {
-    lost_ = left_ == 0;
-    if (lost_) return false;
+    if (left_ == 0) {
+      if (!lost_) ++losses_;
+      lost_ = true;
+      return false;
+    }
     --left_;
     if (a == was_high_) return true;
     was_high_ = a;
     edges_ += ahead ? 1U : ~0U;
     last_ = now;
     return true;
+  }
+
+  // Zeros if it counts nothing.
+  [[nodiscard]] policy::EncoderCount so_far() const {
+    if (input_ == kNoInput) return {};
+    return {.edges = static_cast<std::int32_t>(edges_), .losses = losses_};
   }
 
   // Allows `most` edges from now on. False: some were lost. Call it while no edge is reported.
@@ -54,7 +63,7 @@ private:
 
   std::uint32_t edges_ = 0, last_ = 0;
   std::uint16_t left_ = 0;
-  std::uint8_t input_ = kNoInput, second_ = 0;
+  std::uint8_t input_ = kNoInput, second_ = 0, losses_ = 0;
   bool was_high_ = false, lost_ = false;
 };
 

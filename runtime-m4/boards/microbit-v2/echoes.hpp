@@ -14,7 +14,8 @@ void ping(std::uint16_t trigger, std::uint16_t echo);
 // Ends the measurement. In microseconds; 0: not measured.
 std::uint32_t take(std::uint16_t echo);
 bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
-                Turned& turned);  // as Board::take_edges()
+                Turned& turned);                     // as Board::take_edges()
+policy::EncoderCount edges_so_far(unsigned number);  // as Board::edges_so_far()
 void end_edges(unsigned number);
 void on_edge();  // [interrupt of GPIOTE]
 

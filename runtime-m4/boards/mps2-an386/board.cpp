@@ -85,13 +85,28 @@ bool Board::take_edges(unsigned number, std::uint16_t a, std::uint8_t /*b*/, uns
   Counted& counted = counted_[number];
   const std::uint32_t edges = robosync_virtual_edges[place];
   const bool begins = !counted.begun;
-  if (begins) counted = {edges, edges, true};
+  if (begins) counted = {.begin = edges, .last = edges, .begun = true};
   const auto more = static_cast<std::int32_t>(edges - counted.last);
   counted.last = edges;
   const bool all = static_cast<std::uint32_t>(more < 0 ? -more : more) <= most;
-  if (!all) counted.begin += static_cast<std::uint32_t>(more);
+  if (!all) {
+    counted.begin += static_cast<std::uint32_t>(more);
+    ++counted.losses;
+  }
+  counted.place = static_cast<std::uint16_t>(place);
+  counted.most = static_cast<std::uint16_t>(most);
   turned = {static_cast<std::int32_t>(edges - counted.begin), 0, begins};
   return all;
+}
+
+policy::EncoderCount Board::edges_so_far(unsigned number) {
+  const Counted& counted = counted_[number];
+  if (!counted.begun) return {};
+  const std::uint32_t edges = robosync_virtual_edges[counted.place];
+  const auto more = static_cast<std::int32_t>(edges - counted.last);
+  const bool all = static_cast<std::uint32_t>(more < 0 ? -more : more) <= counted.most;
+  return {.edges = static_cast<std::int32_t>((all ? edges : counted.last) - counted.begin),
+          .losses = static_cast<std::uint8_t>(counted.losses + (all ? 0 : 1))};
 }
 
 void Board::end_edges(unsigned number) {

@@ -2,7 +2,8 @@
 //
 // It has no PWM and no pins that could be read, so they are words in memory. The host reads the PWM pins,
 // `robosync_virtual_pwm`, and writes the input pins, bits of `robosync_virtual_inputs`. It writes the length of each echo,
-// `robosync_virtual_echoes` (trigger pins have no effect), the edges of each encoder, `robosync_virtual_edges`, and the counts of each analog input, `robosync_virtual_analog`.
+// `robosync_virtual_echoes` (trigger pins have no effect), the edges of each encoder, `robosync_virtual_edges`, and the counts of
+// each analog input, `robosync_virtual_analog`. The wheels of a drive with encoders turn by themselves (policy/virtual_wheels.hpp).
 // Everything above this file is the same as with real pins.
 #pragma once
 
@@ -65,7 +66,9 @@ public:
   std::uint32_t take_echo(std::uint16_t echo) override;
   bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
                   Turned& turned) override;
+  policy::EncoderCount edges_so_far(unsigned number) override;
   void end_edges(unsigned number) override;
+  policy::VirtualWheels* wheels() override { return &wheels_; }
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;
   std::uint32_t pwm_read(std::uint16_t pin) const override;
@@ -82,12 +85,15 @@ public:
   Player& player() { return player_; }
 
 private:
-  // What has been counted of an encoder before it began, and at its last take.
+  // What has been counted of an encoder before it began, and at its last take; and how many edges that one allowed.
   struct Counted {
     std::uint32_t begin = 0, last = 0;
+    std::uint16_t place = 0, most = 0;
+    std::uint8_t losses = 0;
     bool begun = false;
   };
   std::array<Counted, vm::kMaxEncoders> counted_{};
+  policy::VirtualWheels wheels_;
   Uart uart_;
   Player player_;
   I2c i2c_{kI2c0};

@@ -62,6 +62,10 @@ bool Board::take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigne
   return echoes::take_edges(number, a, b, most, ~port::read_clock(), turned);
 }
 
+policy::EncoderCount Board::edges_so_far(unsigned number) {
+  return echoes::edges_so_far(number);
+}
+
 void Board::end_edges(unsigned number) {
   echoes::end_edges(number);
 }

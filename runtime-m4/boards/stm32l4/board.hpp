@@ -51,6 +51,7 @@ public:
   std::uint32_t take_echo(std::uint16_t echo) override;
   bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
                   Turned& turned) override;
+  policy::EncoderCount edges_so_far(unsigned number) override;
   void end_edges(unsigned number) override;
   bool analog(std::uint16_t pin, std::uint16_t& voltage) override;
   void pwm_write(std::uint16_t pin, std::uint32_t pulse_us) override;

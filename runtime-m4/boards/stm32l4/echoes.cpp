@@ -87,6 +87,11 @@ bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most,
   return all;
 }
 
+policy::EncoderCount edges_so_far(unsigned number) {
+  const port::Alone alone;
+  return counters[number].so_far();
+}
+
 void end_edges(unsigned number) {
   const port::Alone alone;
   EdgeCounter& counter = counters[number];

@@ -16,6 +16,7 @@ std::uint32_t take(std::uint16_t echo);
 // As Board::take_edges(), at this time of on_edge().
 bool take_edges(unsigned number, std::uint16_t a, std::uint8_t b, unsigned most, std::uint32_t now,
                 Turned& turned);
+policy::EncoderCount edges_so_far(unsigned number);  // as Board::edges_so_far()
 void end_edges(unsigned number);
 // `now` counts up at the core's clock rate.  [interrupt of an edge]
 void on_edge(std::uint32_t now);

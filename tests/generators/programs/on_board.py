@@ -35,6 +35,19 @@ def without_parts(robot, kinds=("sensors", "actuators")):
     return robot
 
 
+def turned(robot):
+    """The names of the sensors that the wheels of a drive turn, also virtual ones."""
+    return {name for actuator in robot["actuators"] for name in actuator.get("encoders", [])}
+
+
+def by_timing(robot):
+    """The robot without the encoders of its drive."""
+    for actuator in robot["actuators"]:
+        for key in ("encoders", "simulated_difference"):
+            actuator.pop(key, None)
+    return robot
+
+
 def fed(sensor):
     """The sensor as one whose readings a test can choose."""
     return {"name": sensor["name"], "type": "VIRTUAL", "channels": _channels(sensor)}

@@ -44,6 +44,9 @@ struct EdgesOfL475 : tests::Stm32Timers {
     return boards::stm32l4::echoes::take_edges(number, a, b, most, 80 * now, turned);
   }
   static void end_edges(unsigned number) { boards::stm32l4::echoes::end_edges(number); }
+  static policy::EncoderCount so_far(unsigned number) {
+    return boards::stm32l4::echoes::edges_so_far(number);
+  }
 
   std::uint32_t read(std::uintptr_t address) override {
     if (address == 0x4002'1060) return system_clocks;
@@ -121,6 +124,9 @@ struct EdgesOfMicrobit : tests::Nrf52833 {
     return boards::microbit::echoes::take_edges(number, a, b, most, turned);
   }
   static void end_edges(unsigned number) { boards::microbit::echoes::end_edges(number); }
+  static policy::EncoderCount so_far(unsigned number) {
+    return boards::microbit::echoes::edges_so_far(number);
+  }
 
   std::uint32_t read(std::uintptr_t address) override {
     if (address >= kGpiote + 0x100 && address < kGpiote + 0x120)
@@ -544,6 +550,36 @@ TEMPLATE_TEST_CASE("edges: as many as were allowed interrupt, whatever the wire 
     wheel.turn(true);
   CHECK(wheel.take());
   CHECK(std::abs(wheel.turned.edges - counted - static_cast<int>(kMost)) <= 1);
+}
+
+TEMPLATE_TEST_CASE(
+    "edges: what is counted so far is known between two takes, and how often some were lost", "",
+    EdgesOfL475, EdgesOfMicrobit) {
+  TestType chip;
+  CHECK(TestType::so_far(1).edges == 0);
+  {
+    Wheel<TestType> wheel(chip, 1);
+    for (unsigned i = 0; i < 10; ++i)
+      wheel.turn(true);
+    CHECK(TestType::so_far(1).edges == 20);
+    CHECK(TestType::so_far(0).edges == 0);
+    for (std::uint8_t lost = 0; lost < 3; ++lost) {
+      CHECK(TestType::so_far(1).losses == lost);
+      for (unsigned i = 0; i < kMost; ++i)
+        wheel.turn(false);
+      CHECK(TestType::so_far(1).losses == lost + 1);
+      const std::int32_t counted = TestType::so_far(1).edges;
+      CHECK_FALSE(wheel.take());
+      CHECK(wheel.turned.edges == counted);
+    }
+    wheel.turn(true);
+    CHECK(wheel.take());
+    CHECK(TestType::so_far(1).losses == 3);
+  }
+  CHECK(TestType::so_far(1).edges == 0);
+  Wheel<TestType> again(chip, 1);
+  CHECK(TestType::so_far(1).edges == 0);
+  CHECK(TestType::so_far(1).losses == 0);
 }
 
 TEMPLATE_TEST_CASE("edges: an echo is measured meanwhile, and two encoders count at once", "",

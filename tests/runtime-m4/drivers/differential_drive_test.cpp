@@ -34,7 +34,7 @@ constexpr Pulses kOff{};
 vm::DriveParameters usual() {
   return {.pins = {3, 4, 5, 6},
           .trim = {100, 100},
-          .reserved = 0,
+          .encoders = {0, 0},
           .speed = 40 * kUnit,
           .track = 12 * kUnit,
           .usual = 20 * kUnit};

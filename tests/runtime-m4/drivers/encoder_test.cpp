@@ -81,7 +81,7 @@ struct Robot {
 struct Reader {
   std::int32_t read(std::uint8_t input, std::uint64_t now) {
     std::int32_t raw = -99;
-    CHECK(encoders.sample(board, sensor, 0, input == first, input, now, raw) == counts);
+    CHECK(encoders.sample(outputs, sensor, 0, input == first, input, now, raw) == counts);
     return raw;
   }
   Reader() {
@@ -93,7 +93,9 @@ struct Reader {
       return counts;
     };
   }
+  kernel::Kernel kernel;
   test::NotingBoard board;
+  guard::OutputGuard outputs{kernel, board};
   vm::Sensor sensor{};
   boards::Turned turned{};
   drivers::Encoders encoders;
@@ -186,9 +188,9 @@ TEST_CASE("encoder: nothing is known of edges that were lost, of other inputs, o
   reader.turned = {.edges = 5, .ago = 0, .begun = false};
   CHECK(reader.read(0, 21'000) == 5);
   std::int32_t raw = 0;
-  CHECK_FALSE(reader.encoders.sample(reader.board, reader.sensor, 0, false, 2, 21'000, raw));
-  CHECK_FALSE(
-      reader.encoders.sample(reader.board, reader.sensor, vm::kMaxEncoders, true, 0, 21'000, raw));
+  CHECK_FALSE(reader.encoders.sample(reader.outputs, reader.sensor, 0, false, 2, 21'000, raw));
+  CHECK_FALSE(reader.encoders.sample(reader.outputs, reader.sensor, vm::kMaxEncoders, true, 0,
+                                     21'000, raw));
   CHECK(reader.takes == 3 - 1);
 }
 
