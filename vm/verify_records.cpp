@@ -327,7 +327,7 @@ Refusal check_encoders(const Image& image, const Actuator& drive, const DrivePar
     return good_or(Refusal::bad_value, drive.bus == 0 && has.encoders[1] == 0);
   for (const Side side : kSides)
     if (!encoder_of(image, has, side)) return Refusal::bad_index;
-  const int difference = difference_of(drive);
+  const std::int8_t difference = difference_of(drive);
   return good_or(Refusal::bad_value, has.encoders[0] != has.encoders[1] &&
                                          difference >= -kMostDifference &&
                                          difference <= kMostDifference);
