@@ -46,7 +46,6 @@ target_sources(robosync_compiler_small PRIVATE
   config/devices.cpp
   config/drive.cpp
   config/encoder.cpp
-  config/wheel_encoders.cpp
   config/entries.cpp
   config/fields.cpp
   config/json_format.cpp
@@ -60,6 +59,7 @@ target_sources(robosync_compiler_small PRIVATE
   config/robot_vocabulary.cpp
   config/sensors.cpp
   config/values.cpp
+  config/wheel_encoders.cpp
   config/wiring.cpp
   config/wiring_limits.cpp
   optimize/expression_facts.cpp

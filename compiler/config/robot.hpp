@@ -18,8 +18,8 @@
 namespace robosync::compiler {
 
 constexpr std::size_t kMaxLabels = 255;  // of a channel
-constexpr int kStalePeriods =
-    5;  // a channel without "stale_after" is stale when it is silent for so many periods
+// A channel without "stale_after" is stale when it is silent for so many periods.
+constexpr int kStalePeriods = 5;
 
 struct ChannelConfig {
   Spelled name;
@@ -63,8 +63,9 @@ struct CompanionConfig {
 
 struct SensorConfig {
   Spelled name;
-  std::string device;  // its descriptor in stdlib/devices/
-  std::string part;    // of the board; empty: it is none
+  std::string device;       // its descriptor in stdlib/devices/
+  bool is_unknown = false;  // there is no such descriptor, which has been reported
+  std::string part;         // of the board; empty: it is none
   vm::DriverId driver{};
   std::uint8_t bus = 0;
   std::uint16_t address = 0;    // or pin

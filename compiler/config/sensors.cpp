@@ -356,7 +356,8 @@ std::optional<SensorConfig> read_sensor(const json::Value& value, WiringReader& 
   sensor.name = *name;
   if (part != nullptr) sensor.part = part->name;
   place_channels(sensor);
-  if (known == nullptr) return sensor;
+  sensor.is_unknown = known == nullptr;
+  if (sensor.is_unknown) return sensor;
   const bool is_driven = device.has_driver;
   if (type != nullptr) {
     const Wiring place = wiring.read_sensor(fields, *type, part, device.sensor.driver);

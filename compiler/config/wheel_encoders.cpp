@@ -67,6 +67,7 @@ private:
   }
 
   bool is_usable(const SensorConfig& sensor, const json::Value& value) {
+    if (sensor.is_unknown) return false;
     if (!vm::counts_edges(sensor.driver)) return report_no_encoder(sensor, value);
     const auto distance = distance_of(sensor);
     if (distance) return is_slow_enough(sensor, sensor.channels[*distance].scale, value);
