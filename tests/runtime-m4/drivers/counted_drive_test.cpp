@@ -7,12 +7,15 @@
 #include "runtime-m4/drivers/drivers.hpp"
 #include "runtime-m4/sim/host_board.hpp"
 #include "tests/runtime-m4/drivers/drive.hpp"
+#include "tests/runtime-m4/drivers/wheels.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 #include "vm/drive.hpp"
 
 using namespace robosync;
+using test::kOff;
 using test::order;
+using test::Pulses;
 using vm::Action;
 using vm::Param;
 using vm::Value;
@@ -20,10 +23,8 @@ using vm::Value;
 namespace counted_drive_test {
 namespace {
 
-constexpr Value kUnit = 10 * vm::kScale;  // a centimetre
+constexpr Value kCentimetre = 10 * vm::kScale;
 constexpr kernel::Time kSecond = 1'000'000;
-using Pulses = std::array<std::uint32_t, 4>;
-constexpr Pulses kOff{};
 
 // An edge each 0.5 cm. The left encoder is the program's second one.
 struct Bench {
@@ -37,8 +38,8 @@ struct Bench {
       channels[s].scale_den = 40;
     }
     drive.driver = vm::DriverId::differential_drive;
-    drive.min = -20'000 * kUnit;
-    drive.max = 20'000 * kUnit;
+    drive.min = -20'000 * kCentimetre;
+    drive.max = 20'000 * kCentimetre;
     drive.speed_limit = vm::kValueMax;
     board.count_of = [this](unsigned number) { return counts[1 - number]; };
     vm::Image image;
@@ -69,16 +70,16 @@ struct Bench {
       turn(0, 0);
     return now - begun;
   }
-  Pulses pulses() const { return {board.pulse(3), board.pulse(4), board.pulse(5), board.pulse(6)}; }
+  Pulses pulses() const { return test::pulses_of(board); }
   Value position() const { return state.motion.at(now); }
 
   const drivers::Driver& driver = drivers::driver(vm::DriverId::differential_drive);
   vm::DriveValues values = vm::values_of({.pins = {3, 4, 5, 6},
                                           .trim = {100, 100},
                                           .encoders = {2, 1},
-                                          .speed = 40 * kUnit,
-                                          .track = 12 * kUnit,
-                                          .usual = 20 * kUnit});
+                                          .speed = 40 * kCentimetre,
+                                          .track = 12 * kCentimetre,
+                                          .usual = 20 * kCentimetre});
   std::array<vm::Sensor, 2> sensors{};
   std::array<vm::Channel, 2> channels{};
   vm::Actuator drive{};
@@ -105,7 +106,7 @@ std::string robot(const std::string& more = "") {
 
 TEST_CASE("counted drive: it goes on until both wheels have counted their way") {
   Bench bench;
-  CHECK(bench.begin(Action::move, {{Param::by, 10 * kUnit}, {Param::at, 10 * kUnit}}) ==
+  CHECK(bench.begin(Action::move, {{Param::by, 10 * kCentimetre}, {Param::at, 10 * kCentimetre}}) ==
         Pulses{5000, 0, 5000, 0});
   for (unsigned i = 0; i < 19; ++i)
     CHECK(bench.turn(1, 1) == Pulses{5000, 0, 5000, 0});
@@ -113,7 +114,7 @@ TEST_CASE("counted drive: it goes on until both wheels have counted their way") 
   CHECK(bench.turn(0, 0) == Pulses{5000, 0, 0, 0});
   CHECK(bench.turn(1, 0) == kOff);
   CHECK(bench.wake == drivers::kDone);
-  CHECK(bench.position() == 10 * kUnit);
+  CHECK(bench.position() == 10 * kCentimetre);
 }
 
 TEST_CASE("counted drive: a way of less than half an edge moves nothing") {
@@ -126,7 +127,7 @@ TEST_CASE("counted drive: a way of less than half an edge moves nothing") {
 TEST_CASE("counted drive: a movement takes 20 ms at least, but its wheels go off at their edges") {
   Bench bench;
   const kernel::Time begun = bench.now;
-  CHECK(bench.begin(Action::move, {{Param::by, 5 * vm::kScale}, {Param::at, 40 * kUnit}}) ==
+  CHECK(bench.begin(Action::move, {{Param::by, 5 * vm::kScale}, {Param::at, 40 * kCentimetre}}) ==
         Pulses{20'000, 0, 20'000, 0});
   CHECK(bench.turn(1, 1) == kOff);
   CHECK(bench.now == begun + 5000);
@@ -138,7 +139,7 @@ TEST_CASE("counted drive: a movement takes 20 ms at least, but its wheels go off
 
 TEST_CASE("counted drive: the wheel that is ahead gets less power") {
   Bench bench;
-  bench.begin(Action::move, {{Param::by, 100 * kUnit}});
+  bench.begin(Action::move, {{Param::by, 100 * kCentimetre}});
   CHECK(bench.turn(1, 0) == Pulses{8000, 0, 10'000, 0});
   CHECK(bench.turn(0, 1) == Pulses{10'000, 0, 10'000, 0});
   CHECK(bench.turn(1, 4) == Pulses{10'000, 0, 7500, 0});
@@ -146,29 +147,30 @@ TEST_CASE("counted drive: the wheel that is ahead gets less power") {
 
 TEST_CASE("counted drive: backward and in a turn its encoders count backward") {
   Bench bench;
-  CHECK(bench.begin(Action::move, {{Param::by, -2 * kUnit}}) == Pulses{0, 10'000, 0, 10'000});
+  CHECK(bench.begin(Action::move, {{Param::by, -2 * kCentimetre}}) == Pulses{0, 10'000, 0, 10'000});
   bench.turn(-3, -3);
   CHECK(bench.turn(-1, -1) == kOff);
-  CHECK(bench.position() == -2 * kUnit);
-  CHECK(bench.begin(Action::play, {{Param::by, 90 * vm::kScale}, {Param::direction, -kUnit}}) ==
-        Pulses{0, 10'000, 10'000, 0});  // 9.42 cm
+  CHECK(bench.position() == -2 * kCentimetre);
+  CHECK(
+      bench.begin(Action::play, {{Param::by, 90 * vm::kScale}, {Param::direction, -kCentimetre}}) ==
+      Pulses{0, 10'000, 10'000, 0});  // 9.42 cm
   CHECK(bench.turn(-18, 18) == Pulses{0, 10'000, 10'000, 0});
   CHECK(bench.turn(-1, 1) == kOff);
   CHECK(bench.wake == drivers::kDone);
-  CHECK(bench.position() == -2 * kUnit);
+  CHECK(bench.position() == -2 * kCentimetre);
   bench.begin(Action::move, {{Param::to, 0}});
   CHECK(bench.turn(4, 4) == kOff);
   CHECK(bench.position() == 0);
 
   Bench forward_only(false);
-  forward_only.begin(Action::move, {{Param::by, -2 * kUnit}});
+  forward_only.begin(Action::move, {{Param::by, -2 * kCentimetre}});
   CHECK(forward_only.turn(4, 4) == kOff);
-  CHECK(forward_only.position() == -2 * kUnit);
+  CHECK(forward_only.position() == -2 * kCentimetre);
 }
 
 TEST_CASE("counted drive: a wheel without edges ends it, and so do too many edges") {
   Bench bench;
-  bench.begin(Action::move, {{Param::by, 100 * kUnit}});
+  bench.begin(Action::move, {{Param::by, 100 * kCentimetre}});
   bench.turn(7, 6);
   const kernel::Duration took = bench.wait();
   CHECK(bench.wake == drivers::kBlocked);
@@ -191,17 +193,17 @@ TEST_CASE(
   CHECK(bench.turn(0, 0) == kOff);
   CHECK(bench.wake == drivers::kDone);
   CHECK(bench.now == kSecond * 3 / 2);
-  CHECK(bench.position() == 12 * kUnit);
+  CHECK(bench.position() == 12 * kCentimetre);
 }
 
 TEST_CASE("counted drive: STOP and a halt end it where its wheels have come to") {
   Bench bench;
-  bench.begin(Action::move, {{Param::by, 100 * kUnit}});
+  bench.begin(Action::move, {{Param::by, 100 * kCentimetre}});
   bench.turn(5, 5);
   CHECK(bench.begin(Action::stop) == kOff);
   CHECK(bench.wake == drivers::kDone);
   CHECK(bench.position() == 25'000);
-  bench.begin(Action::move, {{Param::by, 100 * kUnit}});
+  bench.begin(Action::move, {{Param::by, 100 * kCentimetre}});
   bench.turn(5, 5);
   bench.guard.halt(1);
   CHECK(bench.pulses() == kOff);
@@ -245,15 +247,9 @@ struct Program {
       return true;
     };
     rig.board.count_of = [this](unsigned) { return count; };
-    REQUIRE(rig.activate(test::compile(test::stops_when_far(body), robot())).ok());
-    rig.feed(0, 6);
-    rig.run(20);
-    rig.feed(0, 20, 20);
+    test::do_at_20_ms(rig, body, robot());
   }
-  Pulses at(unsigned ms) {
-    rig.run(ms);
-    return {rig.board.pulse(3), rig.board.pulse(4), rig.board.pulse(5), rig.board.pulse(6)};
-  }
+  Pulses at(unsigned ms) { return test::pulses_at(rig, ms); }
   // An edge of both wheels each 50 ms.
   Pulses turn_until(unsigned ms) {
     Pulses pulses{};
@@ -327,7 +323,7 @@ TEST_CASE("counted drive: LIMIT holds for its wheels, and so do the trims") {
 
 TEST_CASE("counted drive: a wheel that rocks to and fro ends it") {
   Bench bench;
-  bench.begin(Action::move, {{Param::by, 100 * kUnit}});
+  bench.begin(Action::move, {{Param::by, 100 * kCentimetre}});
   const kernel::Time begun = bench.now;
   for (std::int32_t rock = 1; bench.wake > drivers::kBlocked; rock = -rock)
     bench.turn(rock, 1);

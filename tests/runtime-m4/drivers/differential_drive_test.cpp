@@ -8,6 +8,7 @@
 
 #include "runtime-m4/drivers/drivers.hpp"
 #include "tests/runtime-m4/drivers/drive.hpp"
+#include "tests/runtime-m4/drivers/wheels.hpp"
 #include "tests/runtime-m4/rig.hpp"
 #include "tests/runtime-m4/robot.hpp"
 #include "tests/support/golden.hpp"
@@ -15,7 +16,9 @@
 
 using namespace robosync;
 using drivers::Order;
+using test::kOff;
 using test::order;
+using test::Pulses;
 using vm::Action;
 using vm::Param;
 using vm::Value;
@@ -25,10 +28,6 @@ namespace {
 
 constexpr Value kUnit = vm::kScale;
 constexpr kernel::Time kSecond = 1'000'000;
-
-// The pulses of left forward, left backward, right forward, right backward.
-using Pulses = std::array<std::uint32_t, 4>;
-constexpr Pulses kOff{};
 
 // 40 cm/s with full power, 12 cm between the wheels, 20 cm/s without AT.
 vm::DriveParameters usual() {
@@ -85,7 +84,7 @@ struct Bench {
     }
     return now - begun;
   }
-  Pulses pulses() const { return {board.pulse(3), board.pulse(4), board.pulse(5), board.pulse(6)}; }
+  Pulses pulses() const { return test::pulses_of(board); }
   Value position() const { return state.motion.at(now); }
 
   const drivers::Driver& driver = drivers::driver(vm::DriverId::differential_drive);
@@ -115,15 +114,9 @@ std::string robot(const std::string& more = "") {
 // A program that does `body` at 20 ms.
 struct Program {
   explicit Program(const std::string& body, const std::string& more = "") {
-    REQUIRE(rig.activate(test::compile(test::stops_when_far(body), robot(more))).ok());
-    rig.feed(0, 6);
-    rig.run(20);
-    rig.feed(0, 20, 20);
+    test::do_at_20_ms(rig, body, robot(more));
   }
-  Pulses at(unsigned milliseconds) {
-    rig.run(milliseconds);
-    return {rig.board.pulse(3), rig.board.pulse(4), rig.board.pulse(5), rig.board.pulse(6)};
-  }
+  Pulses at(unsigned milliseconds) { return test::pulses_at(rig, milliseconds); }
   test::Rig rig;
 };
 
