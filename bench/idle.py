@@ -43,7 +43,8 @@ def code_of(prefixes):
 
 
 def kicks(bytes_of_marks, program=None):
-    """The marks of the watchdog kicks, from power-up until the marks fill this many bytes."""
+    """The marks of the watchdog kicks. They fill this many bytes from power-up, or from the upload of the program, which
+    may end late in the robot's time: that time does not wait for a busy host."""
     known = functions(of_the_board(KICK))
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "marks"
@@ -51,6 +52,7 @@ def kicks(bytes_of_marks, program=None):
         with Board(icount=FAST, extra=plugin_arguments(known, out, apart)) as board:
             if program:
                 rsc.run("upload", program, "--port", board.port)
+                bytes_of_marks += out.stat().st_size
             deadline = time.monotonic() + PATIENCE
             while out.stat().st_size < bytes_of_marks:
                 if time.monotonic() > deadline:
