@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/response_time.hpp"
+#include "runtime-m4/policy/rules.hpp"
 #include "vm/opcode.hpp"
 
 namespace robosync::analysis {
@@ -27,11 +28,18 @@ void Pauses::note(std::uint32_t ms) {
   others_ms = std::min(others_ms, ms);
 }
 
+// The runtime sees to it that a round without a pause is not followed by the next one sooner than kLeastPauseMs.
+void Pauses::note_end(std::uint64_t waited_ms) {
+  const auto waited = static_cast<std::uint32_t>(std::min<std::uint64_t>(waited_ms, kNever));
+  round_ms = std::min(round_ms, waited == 0 ? policy::kLeastPauseMs : waited);
+}
+
 void Pauses::note(const Pauses& other) {
   least_ms = std::min(least_ms, other.least_ms);
   others_ms = std::min(others_ms, other.others_ms);
   at_once += other.at_once;
   again_ms = std::min(again_ms, other.again_ms);
+  round_ms = std::min(round_ms, other.round_ms);
   if (line == kNoLine) line = other.line;
 }
 
@@ -62,6 +70,7 @@ Pauses pauses_of(const vm::Image& image, const vm::Behavior& behavior, const vm:
           pauses.line = line_of(image, response.start + at);
       }
     }
+    if (flow == vm::Flow::end) pauses.note_end(waited[at]);
     if (!vm::ends_loop(flow)) continue;
     const std::size_t begin = at + 1 - std::min<std::size_t>(vm::operand_wide(code[at]), at + 1);
     const Instructions round = std::max<Instructions>(waited[at] - waited[begin], 1);

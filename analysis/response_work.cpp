@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/costs.hpp"
+#include "runtime-m4/policy/rules.hpp"
 #include "vm/opcode.hpp"
 
 namespace robosync::analysis {
@@ -144,11 +145,12 @@ private:
                      image_.constants[vm::operand_wide(word)]);
   }
 
-  // No time, or no speed: it is done immediately.
+  // No speed: it is done immediately. A short time: as good as immediately, since an actuator is served once in a setpoint period.
   void note_parameter(vm::Param param, vm::Value value) {
-    const bool moves =
-        param == vm::Param::at || param == vm::Param::over || param == vm::Param::for_;
-    takes_time_ = takes_time_ && !(moves && value <= 0);
+    const bool times = param == vm::Param::over || param == vm::Param::for_;
+    const bool stands = param == vm::Param::at && value <= 0;
+    const bool is_short = times && policy::milliseconds_of(value) < policy::kSetpointPeriodMs;
+    takes_time_ = takes_time_ && !stands && !is_short;
   }
 
   bool follows(vm::Word word) const {

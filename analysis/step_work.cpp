@@ -238,10 +238,8 @@ Instructions StepWork::firing(unsigned rule) const {
   return costs::kClaim + costs::kRun + output(rule) + interruptions(rule);
 }
 
-Instructions StepWork::by_itself(unsigned rule) const {
-  const Instructions goes_on = worst_[rule].pauses.any() ? costs::kGoOn + output(rule) : 0;
-  const bool starts = wants_on(rule) || image_.rules[rule].kind == RuleKind::every;
-  return std::max(goes_on, starts ? firing(rule) : 0);
+Instructions StepWork::going_on(unsigned rule) const {
+  return costs::kGoOn + output(rule);
 }
 
 // The worst part of its response.
@@ -324,9 +322,9 @@ Instructions StepWork::standing() const {
   return sum;
 }
 
-// Responses that run or wait: those that need no actuator, and of the others at most as many as there are
-// actuators in a set of which each response holds at least one. Any such set will do; this one is built by
-// repeatedly taking the actuator that most of the remaining responses want.
+// Responses that run, wait or rest between two rounds: those that need no actuator, and of the others at most as many as there
+// are actuators in a set of which each response holds at least one. Any such set will do; this one is built by repeatedly
+// taking the actuator that most of the remaining responses want.
 Instructions StepWork::running() const {
   unsigned count = 0;
   std::vector<Actuators> left;
@@ -335,7 +333,7 @@ Instructions StepWork::running() const {
     for (const std::uint16_t side : {image_.rules[r].then_response, image_.rules[r].else_response})
       if (side != vm::kNoIndex && image_.responses[side].actuators != 0)
         left.push_back(image_.responses[side].actuators);
-    if (actuators({r}) == 0 && worst_[r].pauses.any()) ++count;
+    if (actuators({r}) == 0 && (pauses(r).any() || goes_round(r))) ++count;
   }
   for (; !left.empty(); ++count) {
     const unsigned most = most_wanted(left);
@@ -393,20 +391,17 @@ std::uint32_t StepWork::every_ms(unsigned r) const {
   return policy::period_ms(period.low);
 }
 
-Pauses StepWork::turns(unsigned r) const {
-  const RuleKind kind = image_.rules[r].kind;
-  if (is_safety(r)) return {};
-  Pauses turns = worst_[r].pauses;
-  if (kind == RuleKind::every) turns.note(every_ms(r));
-  if (turns.any() || !wants_on(r) || (kind == RuleKind::when_else && !may_lose(r))) return turns;
-  const bool at_once = kind == RuleKind::while_ && actuators({r}) == 0;
-  turns.note(at_once ? 1 : policy::kSetpointPeriodMs);
-  return turns;
+std::uint32_t StepWork::begins_ms(unsigned r) const {
+  if (is_safety(r)) return Pauses::kNever;
+  if (image_.rules[r].kind == RuleKind::every) return every_ms(r);
+  std::uint32_t least = Pauses::kNever;
+  if (wants_on(r) && may_lose(r)) least = policy::kLeastPauseMs;
+  if (goes_round(r)) least = std::min(least, pauses(r).round_ms);
+  return least;
 }
 
 Actuators StepWork::held_while_pausing(unsigned r) const {
-  const bool due_otherwise = image_.rules[r].kind == RuleKind::every || wants_on(r);
-  return due_otherwise || !worst_[r].pauses.any() ? 0 : common_actuators(image_, r);
+  return pauses(r).any() ? common_actuators(image_, r) : 0;
 }
 
 }  // namespace robosync::analysis

@@ -40,10 +40,10 @@ public:
   [[nodiscard]] Instructions step(const Rules& rules, const Inputs& changed) const;
   // The consequences of a rule that fires and wins; 0 if it has no response.
   [[nodiscard]] Instructions firing(unsigned rule) const;
-  // … of one that goes on after a pause, or starts because of time alone.
-  [[nodiscard]] Instructions by_itself(unsigned rule) const;
+  // … of one that goes on after a pause.
+  [[nodiscard]] Instructions going_on(unsigned rule) const;
   // It fires when its condition becomes true, and for no other reason: never twice without being
-  // evaluated as false in between. A WHILE also starts again; turns() covers that.
+  // evaluated as false in between. A WHILE also starts again: begins_ms() covers that.
   [[nodiscard]] bool alternates(unsigned rule) const;
   // After it fires, it does not fire again in this time: FOR is its last word; 0: not known.
   [[nodiscard]] std::uint32_t gap_ms(unsigned rule) const;
@@ -69,10 +69,12 @@ public:
   [[nodiscard]] bool fires_after_event(unsigned rule) const;
   // The shortest time between two evaluations that a FOR causes; 0: it has no FOR.
   [[nodiscard]] std::uint32_t held_ms(unsigned rule) const { return held_ms_[rule]; }
-  // How often a waiting response goes on, a rule starts again, an EVERY comes round; not any():
-  // the rule is never repeatedly due on its own.
-  [[nodiscard]] Pauses turns(unsigned rule) const;
-  // If a pause is all that makes the rule due on its own: the actuators that it holds in each pause; else none.
+  // The pauses of its responses; not any() for a SAFETY rule.
+  [[nodiscard]] const Pauses& pauses(unsigned rule) const { return worst_[rule].pauses; }
+  // How soon it may begin again without a trigger from outside: an EVERY, the next round of a WHILE, what may lose its actuators
+  // and claim them again. kNever: it does not.
+  [[nodiscard]] std::uint32_t begins_ms(unsigned rule) const;
+  // The actuators that it holds in each of its pauses.
   [[nodiscard]] Actuators held_while_pausing(unsigned rule) const;
 
 private:
@@ -88,6 +90,9 @@ private:
   [[nodiscard]] Instructions running() const;
   [[nodiscard]] std::uint32_t every_ms(unsigned rule) const;
   [[nodiscard]] bool wants_on(unsigned rule) const;
+  [[nodiscard]] bool goes_round(unsigned rule) const {
+    return image_.rules[rule].kind == vm::RuleKind::while_;
+  }
   [[nodiscard]] policy::ActuatorCosts driver_costs(unsigned actuator) const {
     return policy::actuator_costs(image_, actuator);
   }

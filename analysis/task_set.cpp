@@ -51,11 +51,12 @@ public:
     for (unsigned s = 0; s < image_.sensors.size(); ++s)
       vm::is_served(image_.sensors[s].driver) ? add_served(s) : add_sensor(s);
     for (unsigned r = 0; r < image_.rules.size(); ++r) {
-      if (work_.turns(r).any()) add_turns(r);
+      if (work_.pauses(r).any()) add_pauses(r);
+      if (work_.begins_ms(r) != Pauses::kNever) add_beginnings(r);
       if (work_.held_ms(r) != 0 && !work_.is_safety(r)) add_held(r);
     }
     for (const Holders& holders : holders_)
-      holders.rules.size() == 1 ? add_rule(*holders.rules.begin(), holders.period_ms)
+      holders.rules.size() == 1 ? add_going_on(*holders.rules.begin(), holders.period_ms)
                                 : add_holders(holders);
     add_fading();
     add_checks();
@@ -73,9 +74,10 @@ private:
     std::uint32_t period_ms;
     Rules rules;
   };
-  // Rules of which one goes on in each step of the source.
-  struct GoingOn {
-    Rules rules;
+  // In each step of the source this rule, or another one that costs no more, goes on or begins by itself.
+  struct ByItself {
+    unsigned rule;
+    Instructions cost;
     std::size_t source;
   };
 
@@ -305,11 +307,8 @@ private:
                               instructions_in_ms(work_.cooldown_ms(rule))});
     }
     group(rules);
-    for (const GoingOn& one : goes_on_) {
-      const unsigned worst = *std::ranges::max_element(
-          one.rules, {}, [this](unsigned rule) { return work_.by_itself(rule); });
-      set_.firings.push_back({name_of(worst), work_.by_itself(worst), false, {one.source}});
-    }
+    for (const ByItself& one : by_itself_)
+      set_.firings.push_back({name_of(one.rule), one.cost, false, {one.source}});
   }
 
   // Which of the firings so far, those of `rules`, exclude each other, and which want the same
@@ -386,17 +385,17 @@ private:
               fires ? Rules{r} : Rules{}, work_.sets({r}));
   }
 
-  void add_turns(unsigned r) {
-    const Pauses turns = work_.turns(r);
-    const bool apart = turns.better_apart();
+  void add_pauses(unsigned r) {
+    const Pauses& pauses = work_.pauses(r);
+    const bool apart = pauses.better_apart();
     if (!apart)
-      join_holders(r, turns.least_ms);
-    else if (turns.others_ms != Pauses::kNever)
-      add_rule(r, turns.others_ms);
-    for (unsigned i = 0; apart && i < turns.at_once; ++i)
-      add_rule(r, turns.again_ms);
-    const bool often = !apart || turns.again_ms <= policy::kSetpointPeriodMs;
-    if (often && set_.short_wait == TaskSet::kNoWait) set_.short_wait = turns.line;
+      join_holders(r, pauses.least_ms);
+    else if (pauses.others_ms != Pauses::kNever)
+      add_going_on(r, pauses.others_ms);
+    for (unsigned i = 0; apart && i < pauses.at_once; ++i)
+      add_going_on(r, pauses.again_ms);
+    const bool often = !apart || pauses.again_ms <= policy::kLeastPauseMs;
+    if (often && set_.short_wait == TaskSet::kNoWait) set_.short_wait = pauses.line;
   }
 
   // A response holds its actuators while it pauses. So, of responses with a common actuator, one pauses at a time, and all
@@ -423,18 +422,29 @@ private:
     const std::string_view name = image_.string(image_.actuators[actuator].name);
     const std::size_t source =
         add_timed(fmt::format("responses that hold {}", name), holders.period_ms, {}, {}, {}, set);
-    goes_on_.push_back({holders.rules, source});
+    const unsigned worst = *std::ranges::max_element(
+        holders.rules, {}, [this](unsigned rule) { return work_.going_on(rule); });
+    by_itself_.push_back({worst, work_.going_on(worst), source});
   }
 
-  void add_rule(unsigned r, std::uint32_t period_ms) {
-    // A response that goes on evaluates no condition.
+  // A response that goes on evaluates no condition.
+  void add_going_on(unsigned r, std::uint32_t period_ms) {
+    add_by_itself(r, "after a pause", period_ms, {}, work_.later_sets(r), work_.going_on(r));
+  }
+
+  // Its response begins without a trigger from outside.
+  void add_beginnings(unsigned r) {
     const bool evaluated = image_.rules[r].kind == vm::RuleKind::every;
-    const std::size_t source = add_timed(fmt::format("{}, by itself", name_of(r)), period_ms,
-                                         evaluated ? Rules{r} : Rules{}, {}, {r},
-                                         evaluated ? work_.sets({r}) : work_.later_sets(r));
-    // What is known of triggers does not apply to a response that goes on.
-    std::erase(triggered_by_[r], source);
-    goes_on_.push_back({{r}, source});
+    add_by_itself(r, "by itself", work_.begins_ms(r), evaluated ? Rules{r} : Rules{},
+                  work_.sets({r}), work_.firing(r));
+  }
+
+  void add_by_itself(unsigned r, std::string_view how, std::uint32_t period_ms,
+                     const Rules& evaluated, const Inputs& set, Instructions cost) {
+    const std::size_t source =
+        add_timed(fmt::format("{}, {}", name_of(r), how), period_ms, evaluated, {}, {r}, set);
+    std::erase(triggered_by_[r], source);  // what is known of triggers does not apply
+    by_itself_.push_back({r, cost, source});
   }
 
   void add_fading() {
@@ -553,7 +563,7 @@ private:
   std::map<unsigned, std::vector<std::size_t>>
       triggered_by_;  // by rule: the sources whose steps may trigger it
   std::vector<Holders> holders_;
-  std::vector<GoingOn> goes_on_;
+  std::vector<ByItself> by_itself_;
   std::vector<std::size_t> source_of_sensor_;
   Actuators commanded_ = 0;
 };

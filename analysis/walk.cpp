@@ -22,8 +22,7 @@ bool writes(vm::Word word) {
 }
 
 std::uint32_t least_wait_ms(vm::Word word, std::span<const Interval> cells) {
-  if (vm::info_of(vm::opcode_of(word)).operands[0] != Operand::read)
-    return policy::kSetpointPeriodMs;
+  if (vm::info_of(vm::opcode_of(word)).operands[0] != Operand::read) return policy::kLeastPauseMs;
   return policy::period_ms(cells[vm::operand_a(word)].low);
 }
 

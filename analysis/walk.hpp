@@ -14,8 +14,8 @@ namespace robosync::analysis {
 
 using Ranges = std::array<Interval, std::size_t{2} * vm::kMaxInputs>;  // of inputs, by number
 
-// How long a pause takes at least: a WAIT takes as long as its number, and at least until the next step;
-// any other pause may be over when the step thread looks again.
+// How long a pause takes at least: a WAIT takes as long as its number, and at least until the next step; any other one takes
+// policy::kLeastPauseMs.
 [[nodiscard]] std::uint32_t least_wait_ms(vm::Word word, std::span<const Interval> cells);
 // Does it write a number or a truth into its cell A?
 [[nodiscard]] bool writes(vm::Word word);

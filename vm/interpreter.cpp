@@ -384,7 +384,12 @@ op_wait_done:
   pause = Pause::until_done;
   goto give_up;
 op_until:
-  if (a() == kTrue) goto next;
+  if (a() == kTrue) {
+    if (machine.left_ms == 0) goto next;
+    wake = machine.now + machine.left_ms;
+    pause = Pause::satisfied;
+    goto give_up;
+  }
   pc -= operand_wide(word);
   wake = machine.wake;
   pause = Pause::still_polling;

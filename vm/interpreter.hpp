@@ -25,6 +25,7 @@ struct Machine {
   std::uint32_t random = 1;     // state of the random numbers, never 0
   bool event = false;  // set when a condition is true for this step only (BECOMES, CHANGES …)
   bool divided_by_zero = false;  // set by a division by zero
+  std::uint8_t left_ms = 0;  // `until` goes on this much later at the earliest, even if it is true
   // Bit a: the response has assigned, or shifted, input cell a. Cleared by the caller.
   std::uint32_t assigned = 0;
   std::uint32_t shifted = 0;
@@ -41,6 +42,7 @@ enum class Pause : std::uint8_t {
   until_done,     // when all commands in its output are done
   polling,        // in every step that evaluates its behaviour, or at Progress::wake
   still_polling,  // like polling: `until` was not true, so it keeps polling
+  satisfied,      // at Progress::wake: `until` was true before Machine::left_ms were over
   count_
 };
 struct Progress {

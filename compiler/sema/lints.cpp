@@ -406,7 +406,7 @@ bool takes_time(const ir::Block& block, const Names& names) {
 void lint_length(const ir::Rule& rule, const Names& names, Diagnostics& diagnostics) {
   if (rule.kind != vm::RuleKind::while_ || rule.cooldown > 0) return;
   if (takes_time(rule.then_response, names)) return;
-  diagnostics.report(Code::W0219, "this runs 1,000 times a second: its response takes no time")
+  diagnostics.report(Code::W0219, "this runs 50 times a second: its response takes no time")
       .label(rule.span)
       .helps("use EVERY with an IF in it, or end the response with a WAIT");
 }

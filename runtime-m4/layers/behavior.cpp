@@ -22,7 +22,6 @@ bool BehaviorLayer::start(const LoadedProgram& program, Memory& memory, ProgramT
   retired_ = 0;
   units_ = memory.take_zero<policy::Part::behavior_units, Unit>();
   resume_points_ = memory.take<policy::Part::resume_points, ResumePoint>();
-  has_run_.start(memory.take<policy::Part::has_run, RuleSet::Word>());
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
     if (!start_unit(b, threads)) return false;
   return true;
@@ -48,12 +47,6 @@ bool BehaviorLayer::start_unit(unsigned behavior, ProgramThreads& threads) {
 
 // --- called from the step thread ---
 
-void BehaviorLayer::begin_step(const Snapshot& snapshot) {
-  snapshot_ = &snapshot;
-  if (snapshot.milliseconds() != ran_at_) has_run_.clear();
-  ran_at_ = snapshot.milliseconds();
-}
-
 void BehaviorLayer::take_turn(unsigned behavior, const RuleSet& rules) {
   concerned_ = &rules;
   task_ = Task::turn;
@@ -68,7 +61,7 @@ void BehaviorLayer::take_sole_turn(unsigned rule, bool goes_on) {
 }
 
 void BehaviorLayer::respond(unsigned rule, Side side) {
-  resume_points_[rule] = {};
+  resume_points_[rule].pause = vm::Pause::ended;
   release_to_run(rule, begin_of(rule, side));
 }
 
@@ -131,10 +124,18 @@ vm::Pause BehaviorLayer::checked_pause(const Result& result) const {
   return inside ? result.pause : vm::Pause::ended;
 }
 
+// ResumePoint::ran, after a response that `before` says about has run.
+std::uint32_t BehaviorLayer::ran_at(vm::Pause pause, const ResumePoint& before) const {
+  if (pause == vm::Pause::still_polling || pause == vm::Pause::satisfied) return before.ran;
+  const bool has_waited = before.pause != vm::Pause::ended && pause == vm::Pause::ended;
+  return has_waited ? ResumePoint{}.ran : snapshot_->milliseconds();
+}
+
 // Only a response that polls may have no time.
-std::uint32_t BehaviorLayer::wake_of(const Result& result, vm::Pause pause) const {
+std::uint32_t BehaviorLayer::wake_of(const Result& result, vm::Pause pause, std::uint32_t ran) {
   if (pause == vm::Pause::still_polling) return result.wake;
-  return as_time(pause == vm::Pause::until_done ? snapshot_->milliseconds() + 1 : result.wake);
+  const bool rests = pause == vm::Pause::until_done || pause == vm::Pause::satisfied;
+  return as_time(rests ? ran + policy::kLeastPauseMs : result.wake);
 }
 
 // A response whose behaviour was stopped meanwhile has no effect.
@@ -146,16 +147,17 @@ void BehaviorLayer::conclude(unsigned rule) {
   ResumePoint& point = resume_points_[rule];
   const vm::Pause pause = checked_pause(result);
   const bool waited = point.pause != vm::Pause::ended;
-  const bool moved = pause != vm::Pause::still_polling;
-  if (moved && (!waited || pause != vm::Pause::ended)) has_run_.insert(rule);
+  const bool moved = pause != vm::Pause::still_polling && pause != vm::Pause::satisfied;
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
   if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);
   if (result.words != 0) put_out(result.words, layers_.arbiter.holding(rule).actuators);
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
-  if (waited) point = {};
+  point.ran = ran_at(pause, point);
+  point.pause = pause;
   if (pause == vm::Pause::ended) return;
-  point = {.wake = wake_of(result, pause),
+  point = {.wake = wake_of(result, pause, point.ran),
+           .ran = point.ran,
            .next = static_cast<std::uint16_t>(result.next - program_->image.code.data()),
            .pause = pause};
   if (moved) trace.emit(EventKind::wait, trace.step(), rule);
@@ -218,8 +220,15 @@ std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
 bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
   Triggers::Wish wish;
   if (!layers_.triggers.wish(rule, layers_.arbiter.works(rule), wish)) return false;
+  if (!wish.fresh && rest_left(rule, snapshot_->milliseconds()) != 0) return false;
   silent = wish.silent;
   return claim_for(rule, wish.side, !wish.fresh, claim);
+}
+
+bool BehaviorLayer::will_claim(unsigned rule, Claim& claim) const {
+  Triggers::Wish wish;
+  return layers_.triggers.wish(rule, layers_.arbiter.works(rule), wish) &&
+         claim_for(rule, wish.side, !wish.fresh, claim);
 }
 
 bool BehaviorLayer::claim_for(unsigned rule, Side side, bool retries, Claim& claim) const {
@@ -259,7 +268,10 @@ void BehaviorLayer::run(Unit& unit) {
 
 [[gnu::always_inline]] inline void BehaviorLayer::do_task(const Unit& unit, vm::Machine& machine) {
   if (task_ == Task::sole_turn) return run_sole_turn(rule_, machine);
-  if (task_ == Task::response) return run_response(machine, rule_, Side::then, code_);
+  if (task_ == Task::response) {
+    machine.left_ms = rest_left(rule_, machine.now);
+    return run_response(machine, rule_, Side::then, code_);
+  }
   evaluate_rules(unit, machine);
   if (Claim claim; sole_claim(program_->rules_of(unit.behavior), claim))
     begin_response(machine, claim);
@@ -275,6 +287,7 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
       layers_.triggers.may_want(rule) && !must_pause(rule) && claim_of(rule, claim, silent);
   if (resume_points_[rule].pause != vm::Pause::ended) {
     if (goes_on_ && !claims && !layers_.triggers.is_over(rule)) {
+      machine.left_ms = rest_left(rule, machine.now);
       run_response(machine, rule, Side::then, resume_points_[rule].next);
       workspace_.result->there = Result::kWentOn;
     }

@@ -23,6 +23,7 @@
 #include "runtime-m4/layers/triggers.hpp"
 #include "runtime-m4/layers/variables.hpp"
 #include "runtime-m4/layers/workspace.hpp"
+#include "runtime-m4/policy/rules.hpp"
 #include "vm/interpreter.hpp"
 #include "vm/output.hpp"
 
@@ -39,10 +40,13 @@ public:
     Variables& variables;
     ControlLayer& control;
   };
-  // Where a response waits.
+  // Where a response waits. Times are program time.
   struct ResumePoint {
-    std::uint32_t wake = vm::Machine::kNever;  // program time; for all waits but THEN
-    std::uint16_t next = 0;                    // a word of the code section
+    std::uint32_t wake = vm::Machine::kNever;
+    // When it began, or went on and waited again; or when it was interrupted. At first, and after a response that has
+    // waited: so long ago that it may begin.
+    std::uint32_t ran = 0U - policy::kLeastPauseMs;
+    std::uint16_t next = 0;  // a word of the code section
     vm::Pause pause = vm::Pause::ended;
   };
 
@@ -54,7 +58,7 @@ public:
                                       ProgramThreads& threads);
 
   // --- for the step thread ---
-  void begin_step(const Snapshot& snapshot);
+  void begin_step(const Snapshot& snapshot) { snapshot_ = &snapshot; }
   // Each of these releases a behaviour, one at a time; busy() until it has finished. Its thread then
   // makes the call `rest`.
   // The behaviour's turn: it evaluates those of its rules that are in `rules`.
@@ -79,13 +83,18 @@ public:
   // Not done earlier, to keep the behaviours' stacks small.
   void conclude(unsigned rule);
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
-  void forget_resume_point(unsigned rule) { resume_points_[rule] = {}; }
+  void interrupted(unsigned rule) { resume_points_[rule] = {.ran = snapshot_->milliseconds()}; }
   [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
   // again in this millisecond. A response that went on to its end may begin again. One that checked its condition and
   // still waits checks it again at each reading, even at a second one in this millisecond.
-  bool has_run(unsigned rule, std::uint32_t now) const {
-    return now == ran_at_ && has_run_.has(rule);
+  bool has_run(unsigned rule, std::uint32_t now) const { return resume_points_[rule].ran == now; }
+  // In how many milliseconds it may begin again without a new trigger, or go on after a WAIT UNTIL.
+  std::uint8_t rest_left(unsigned rule, std::uint32_t now) const {
+    static_assert(policy::kLeastPauseMs <= UINT8_MAX);
+    const std::uint32_t passed = now - resume_points_[rule].ran;
+    const bool has_rested = passed >= policy::kLeastPauseMs;
+    return static_cast<std::uint8_t>(has_rested ? 0 : policy::kLeastPauseMs - passed);
   }
 
   // The thread of a behaviour that blocks in the middle of its task, while `step_thread` waits for it; null if none does.
@@ -93,13 +102,15 @@ public:
   [[nodiscard, gnu::cold]] kernel::Thread* blocked_at_work(const kernel::Thread& step_thread) const;
 
   // --- for the step thread and the behaviour itself ---
+  // The claim of `rule` when it has rested.
+  [[nodiscard]] bool will_claim(unsigned rule, Claim& claim) const;
   // The claim of `rule` now, if it has one. silent: the trace has already been told of it.
   [[nodiscard]] bool claim_of(unsigned rule, Claim& claim, bool& silent) const;
   [[nodiscard]] bool claim_for(unsigned rule, Side side, bool retries, Claim& claim) const;
   // A WHILE whose response has begun in this millisecond claims again in the next one. Not inlined: the behaviours' stacks
   // are small.
   [[nodiscard, gnu::noinline]] bool must_pause(unsigned rule) const {
-    return layers_.triggers.is_while(rule) && has_run(rule, ran_at_);
+    return layers_.triggers.is_while(rule) && has_run(rule, snapshot_->milliseconds());
   }
 
 private:
@@ -138,7 +149,8 @@ private:
   static void add_word(const vm::WordEntry& word, Command& command);
   void stage_writes(unsigned behavior);
   vm::Pause checked_pause(const Result& result) const;
-  std::uint32_t wake_of(const Result& result, vm::Pause pause) const;
+  std::uint32_t ran_at(vm::Pause pause, const ResumePoint& before) const;
+  static std::uint32_t wake_of(const Result& result, vm::Pause pause, std::uint32_t ran);
   void release(unsigned behavior);
   void release_to_run(unsigned rule, unsigned code);
 
@@ -156,8 +168,6 @@ private:
   bool goes_on_ = false;  // for a sole turn
   std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
-  RuleSet has_run_;           // see has_run(): in the millisecond …
-  std::uint32_t ran_at_ = 0;  // … of the last step
   std::span<Unit> units_;
   std::span<ResumePoint> resume_points_;
 };

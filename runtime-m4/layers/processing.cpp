@@ -258,12 +258,11 @@ void ProcessingLayer::add_wanting(unsigned rule, Soonest& due, std::uint32_t now
   if (layers_.triggers.is_delayed(rule)) due.in(kLongestRest);
   due.at(layers_.triggers.cooled_at(rule));
   Claim claim{};
-  bool silent = false;
-  if (!layers_.behaviors.claim_of(rule, claim, silent)) return;
+  if (!layers_.behaviors.will_claim(rule, claim)) return;
   const Decision decision = layers_.arbiter.decide(claim);
   if (decision.outcome == Outcome::ignored) return;
   if (decision.wins() || layers_.arbiter.works(rule))
-    due.in(layers_.behaviors.has_run(rule, now) ? 1 : 0);
+    due.in(layers_.behaviors.rest_left(rule, now));
 }
 
 kernel::Time ProcessingLayer::next_time() {
@@ -536,8 +535,8 @@ void ProcessingLayer::interrupt(unsigned rule, unsigned by) {
   if (layers_.arbiter.works(rule)) {
     trace_.emit(EventKind::interrupt, trace_.step(), rule, by);
     cancelled_ |= layers_.arbiter.holding(rule).actuators;
-    layers_.behaviors.forget_resume_point(rule);
   }
+  layers_.behaviors.interrupted(rule);
   layers_.arbiter.end(rule);
   layers_.triggers.interrupted(rule);
 }

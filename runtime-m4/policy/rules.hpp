@@ -31,6 +31,10 @@ inline constexpr std::uint32_t kSafetyPeriodMs = 10;
 // A moving actuator gets a setpoint in each such period: the frame of servos and PWM.
 inline constexpr std::uint32_t kSetpointPeriodMs = 20;
 
+// A THEN and a WAIT UNTIL last at least this long. So does the time from a response's beginning until it begins again without
+// a new trigger, unless it has waited since. So no response takes the processor by going round without a WAIT.
+inline constexpr std::uint32_t kLeastPauseMs = kSetpointPeriodMs;
+
 // Ticks (of 1 ms) that a sensor waits at most for a bus transfer after its sample is due.
 inline constexpr std::uint32_t kBusTicks = 2;
 

@@ -24,13 +24,14 @@ using Catch::Contains;
 
 namespace {
 
-// Of the rule at this line: how often it is due by itself, in ms, the shortest first.
+// Of the rule at this line: how often it goes on or begins by itself, in ms, the shortest first.
 std::vector<std::uint64_t> periods_of(const vm::Image& image, unsigned line) {
   const policy::BoardCosts& board = tool::board_costs();
   const analysis::TaskSet set = analysis::task_set_of(image, board, tool::module_cost);
   std::vector<std::uint64_t> periods;
   for (const analysis::Source& source : set.sources)
-    if (source.name == fmt::format("the rule at line {}, by itself", line))
+    if (source.name == fmt::format("the rule at line {}, by itself", line) ||
+        source.name == fmt::format("the rule at line {}, after a pause", line))
       periods.push_back(source.period / board.instructions_per_ms());
   std::ranges::sort(periods);
   return periods;
@@ -321,6 +322,104 @@ TEST_CASE("no response goes on more often than is said") {
       }
   }
   CHECK(bounded > 20);
+}
+
+namespace {
+
+// Pauses and commands, short ones and such as are done at once.
+std::string drawn_short(std::mt19937& random, unsigned depth) {
+  std::string body;
+  for (unsigned i = 0; i < 1 + random() % 3; ++i) {
+    switch (random() % (depth == 0 ? 5U : 6U)) {
+      case 0:
+        body += fmt::format("MOVE a FOR {}ms\n", random() % 30);
+        break;
+      case 1:
+        body += fmt::format("WAIT {}ms\n", 1 + random() % 60);
+        break;
+      case 2:
+        body += "THEN\n";
+        break;
+      case 3:
+        body += fmt::format("WAIT UNTIL near X {}\n",
+                            random() % 2 == 0 ? fmt::format("> {}", random() % 100) : "CHANGES");
+        break;
+      case 4:
+        body +=
+            fmt::format("WAIT UNTIL near X > {} WITHIN {}ms\n", random() % 100, 1 + random() % 40);
+        break;
+      default:
+        body += "IF near X > 50 DO\n" + drawn_short(random, depth - 1) + "ELSE\n" +
+                drawn_short(random, depth - 1) + "END\n";
+    }
+  }
+  return body;
+}
+
+std::string drawn_head(std::mt19937& random) {
+  switch (random() % 3) {
+    case 0:
+      return fmt::format("EVERY {}ms", 10 + random() % 50);
+    case 1:
+      return fmt::format("WHEN near X > {}", random() % 100);
+    default:
+      return fmt::format("WHILE near X > {}", random() % 60);
+  }
+}
+
+// When the rule goes on, and when it begins without a trigger of another kind than an EVERY's, in ms.
+Periods times_by_itself(const test::Robot& robot, char rule, bool is_every) {
+  Periods times;
+  std::istringstream lines(robot.only("fire win go_on"));
+  std::string fired;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string at = line.substr(0, line.find(' '));
+    if (line.find(std::string(" r") + rule) == std::string::npos) continue;
+    if (line.find(" fire ") != std::string::npos) fired = at;
+    const bool triggered = line.find(" win ") != std::string::npos && fired == at && !is_every;
+    if (line.find(" fire ") == std::string::npos && !triggered) times.push_back(std::stoull(at));
+  }
+  return times;
+}
+
+}  // namespace
+
+TEST_CASE("no response begins or goes on by itself more often than is said") {
+  std::mt19937 random(21);
+  unsigned many = 0;
+  for (unsigned p = 0; p < 300; ++p) {
+    const std::string head = drawn_head(random);
+    const std::string program = fmt::format(
+        "BEHAVIOR high PRIORITY 60\nWHEN far Y CHANGES BY 30% DO\nMOVE a FOR {}ms\nEND\nEND\n"
+        "BEHAVIOR low PRIORITY 40\n{} DO\n{}MOVE a FOR {}ms\nEND\nEND\n",
+        random() % 30, head, drawn_short(random, 2), random() % 30);
+    INFO(program);
+    if (compiler::compile({"robot.rsl", program}, {"robot.json", test::kPlainRobot})
+            .diagnostics.errors() > 0)
+      continue;
+    test::Robot robot(program);
+    const Periods said = periods_of(robot.image(), 7);
+    for (std::uint64_t ms = 0; ms < 3000; ms += 1 + random() % 12)
+      if (const char* const channel = random() % 2 == 0 ? "X" : "Y"; robot.has(channel))
+        robot.feed(ms, channel, static_cast<int>(random() % 100));
+    robot.run(3000);
+    Periods times = times_by_itself(robot, '1', head.starts_with("EVERY"));
+    // A WHILE may end a round and begin the next one in the same millisecond: both count as one.
+    const auto doubled = std::ranges::unique(times);
+    times.erase(doubled.begin(), doubled.end());
+    many += times.size() > 30 ? 1 : 0;
+    for (std::size_t i = 0; i < times.size(); ++i)
+      for (std::size_t j = i; j < std::min(times.size(), i + 50); ++j) {
+        std::uint64_t most = 0;
+        for (const std::uint64_t period : said)
+          most += (times[j] - times[i]) / period + 1;
+        if (j - i + 1 > most) {
+          CAPTURE(times[i], times[j], j - i + 1, most);
+          FAIL();
+        }
+      }
+  }
+  CHECK(many > 100);
 }
 
 TEST_CASE("responses that hold the same actuator go on no more often together than is said") {

@@ -102,6 +102,7 @@ private:
          ++i)
       frame_[i] = kTruths[random_.below(kTruths.size())];
     machine_.now += random_.below(random_.one_in(8) ? UINT32_MAX : 1000);
+    machine_.left_ms = static_cast<std::uint8_t>(random_.one_in(2) ? 0 : random_.below(UINT8_MAX));
   }
 
   std::uint32_t evaluate(const vm::Rule& rule) {

@@ -188,6 +188,22 @@ TEST_CASE("poll gives up once, until as long as its cell is not true") {
   CHECK(run.said().size() == 1);
 }
 
+TEST_CASE("until that is true too soon gives up until it may go on, whatever is true then") {
+  Run run({encode(Op::poll), encode(Op::move, 1, 0), encode_wide(Op::until, 1, 2), kMark,
+           encode(Op::end)});
+  run.machine.now = 77;
+  Progress progress = run.go();
+  run.frame[0] = kTrue;
+  run.machine.left_ms = 5;
+  progress = run.go(progress.next);
+  CHECK(progress.pause == Pause::satisfied);
+  CHECK(progress.wake == 82);
+  CHECK(run.place(progress.next) == 3);
+  run.frame[0] = kFalse;
+  CHECK(run.go(progress.next).pause == Pause::ended);
+  CHECK(run.said().size() == 1);
+}
+
 TEST_CASE("a deadline is reached at its time, and until then it is what the wait wakes for") {
   for (const std::uint32_t begin : {0U, 5000U, 0xFFFFFFF0U}) {  // the last: over the wrap
     CAPTURE(begin);

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/oracles/rsl/response.hpp"
 #include "vm/output.hpp"
 
 namespace robosync::compiler::testing {
@@ -108,15 +109,34 @@ void Runner::take_output(Effects& effects) {
     effects.push_back(describe(image_, output));
 }
 
+namespace {
+
+std::uint32_t next_time(const vm::Progress& progress, std::uint32_t now) {
+  switch (progress.pause) {
+    case vm::Pause::until_time:
+    case vm::Pause::satisfied:
+      return progress.wake;
+    case vm::Pause::until_done:  // there is nothing to be done
+      return now + oracle::kLeastPause;
+    default:
+      return now + 1;
+  }
+}
+
+}  // namespace
+
 Effects Runner::respond(std::size_t rule, World& world, unsigned pauses,
                         const std::function<void(World&)>& pass_time) {
   Effects effects;
   const auto response = image_.rules[behavior_.first_rule + rule].then_response;
   const vm::Word* code = image_.code.data() + image_.responses[response].start;
   ended = false;
+  oracle::Millis ran = world.now;
   for (unsigned pause = 0; pause <= pauses; ++pause) {
     latch(world);
     evaluate_watches();
+    machine.left_ms = static_cast<std::uint8_t>(
+        std::max<oracle::Millis>(ran + oracle::kLeastPause - world.now, 0));
     machine.output = output_.data();
     machine.output_end = output_.data() + output_.size();
     const vm::Progress progress = vm::respond(machine, code);
@@ -125,7 +145,9 @@ Effects Runner::respond(std::size_t rule, World& world, unsigned pauses,
     ended = progress.pause == vm::Pause::ended;
     if (ended || pause == pauses) break;
     code = progress.next;
-    world.now = progress.pause == vm::Pause::until_time ? progress.wake : world.now + 1;
+    if (progress.pause != vm::Pause::still_polling && progress.pause != vm::Pause::satisfied)
+      ran = world.now;
+    world.now = next_time(progress, world.now);
     if (pass_time) pass_time(world);
   }
   return effects;

@@ -130,20 +130,20 @@ TEST_CASE("SET assigns, RAISE only shifts, and unknown does neither") {
   CHECK(world.variables == std::vector<vm::Value>{5000, 3000, 7000});
 }
 
-TEST_CASE("WAIT UNTIL goes on when its condition is true, or when its time is over") {
-  const ir::WaitUntil wait{greater(channel(0), number(3)), number(0.01)};
+TEST_CASE("WAIT UNTIL goes on when its condition is true, or when its time is over; after 20 ms") {
+  const ir::WaitUntil wait{greater(channel(0), number(3)), number(0.03)};
   const ir::Block block = {line(10, wait), turn_to(channel(1))};
   const auto clock = [](World& world) {
     world.channels[1] = static_cast<vm::Value>(world.now);
-    if (world.now == 5) world.channels[0] = 4000;
+    if (world.now == 25) world.channels[0] = 4000;
   };
-  CHECK(effects(block, with_level(0), {}, clock) == Effects{"left 0:5"});
+  CHECK(effects(block, with_level(0), {}, clock) == Effects{"left 0:25"});
   const auto never = [](World& world) {
     world.channels[1] = static_cast<vm::Value>(world.now);
     world.channels[0] = vm::kUnknown;
   };
-  CHECK(effects(block, with_level(0), {}, never) == Effects{"left 0:10"});
-  CHECK(effects(block, with_level(4000), {}, clock) == Effects{"left 0:1"});
+  CHECK(effects(block, with_level(0), {}, never) == Effects{"left 0:30"});
+  CHECK(effects(block, with_level(4000), {}, clock) == Effects{"left 0:20"});
 }
 
 TEST_CASE("what a DEFINE is given outlasts waits, whatever the sensors do") {

@@ -284,7 +284,9 @@ std::optional<Done> waits(Machine& machine, Word word) {
     case Opcode::poll:
       return paused(vm::Pause::polling, machine.now + 1);
     case Opcode::until:
-      if (truth_at(machine, word, 0) == true) return Done{};
+      if (truth_at(machine, word, 0) == true)
+        return machine.left_ms == 0 ? Done{}
+                                    : paused(vm::Pause::satisfied, machine.now + machine.left_ms);
       return paused(vm::Pause::still_polling, machine.wake, true);
     default:
       return std::nullopt;

@@ -172,7 +172,8 @@ void Interpreter::run_responses() {
     outputs.emplace_back(r, running->response.run(here));
     if (running->response.follows_on()) continue;
     if (!running->won_now) trace_.rule("go_on", *rules_[r].rule, rules_[r].behavior);
-    if (running->won_now || running->response.waits()) rules_[r].ran = now_.at;
+    const bool waited_to_its_end = !running->won_now && !running->response.waits();
+    rules_[r].ran = now_.at - (waited_to_its_end ? kLeastPause : 0);
     if (running->response.waits()) trace_.rule("wait", *rules_[r].rule, rules_[r].behavior);
   }
   std::vector<Changes> changes;

@@ -57,8 +57,9 @@ private:
     std::optional<Waiting> waiting;
     std::map<bool, Millis> started;  // last, by side
     std::optional<bool> ran_side;    // of the two, the last that ran
-    Millis ran = -1;                 // its response began, or went on and waits again
-    std::optional<Millis> due;       // the end of the period
+    // Its response began, or went on and waits again; or it was interrupted. Long ago if it has waited to its end.
+    Millis ran = -kLeastPause;
+    std::optional<Millis> due;  // the end of the period
   };
   struct Claim {
     std::size_t rule = 0;

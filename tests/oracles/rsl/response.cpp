@@ -24,16 +24,27 @@ Truth Response::truth(const compiler::Expression& expression) const {
 
 // ---- the walk
 
-bool Response::may_go_on(const Surroundings& around) const {
+bool Response::may_go_on(const Surroundings& around) {
   if (around.now <= paused_at_) return false;  // "Every wait takes at least until the next step."
   if (pause_ == Pause::follow) return true;    // "in each step"
-  if (pause_ == Pause::commands) return around.commands_done;
+  if (pause_ == Pause::commands)
+    return around.commands_done && around.now >= waits_since_ + kLeastPause;
   const bool over = until_ && around.now >= *until_;
-  if (pause_ == Pause::time || over) return over;
-  return around.evaluator.truth(*condition_, sight(around)) == true;
+  if (pause_ == Pause::time) return over;
+  const bool holds = over || around.evaluator.truth(*condition_, sight(around)) == true;
+  return holds && !comes_too_soon(around.now);
+}
+
+// "It goes on then, even if the condition no longer holds."
+bool Response::comes_too_soon(Millis now) {
+  if (now >= waits_since_ + kLeastPause) return false;
+  pause_ = Pause::time;
+  until_ = waits_since_ + kLeastPause;
+  return true;
 }
 
 std::optional<Millis> Response::wait_ends() const {
+  if (pause_ == Pause::commands) return waits_since_ + kLeastPause;
   return pause_ == Pause::time ? until_ : std::nullopt;
 }
 
@@ -64,6 +75,8 @@ void Response::leave_block() {
     pause_ = Pause::follow;
     paused_at_ = around_->now;
     follows_on_ = true;
+  } else if (place.follow && comes_too_soon(around_->now)) {
+    follows_on_ = true;  // nobody hears that it is over
   }
   if (place.loop != nullptr) switch (place.loop->kind) {
       case compiler::ir::RepeatKind::times:
@@ -85,6 +98,7 @@ void Response::leave_block() {
 void Response::pause(Pause why, Number duration) {
   pause_ = why;
   paused_at_ = around_->now;
+  waits_since_ = around_->now;
   until_.reset();
   if (why == Pause::time) until_ = around_->now + std::max<Millis>(duration.value_or(0), 0);
 }

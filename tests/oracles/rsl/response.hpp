@@ -32,6 +32,9 @@ struct Output {
   std::map<std::size_t, Number> seen;  // what it SET, RAISEd or LOWERed, as it sees it itself
 };
 
+// "A THEN and a WAIT UNTIL last 20 ms at least." So does a FOLLOW, and until a rule begins again by itself.
+inline constexpr Millis kLeastPause = 20;
+
 // What a response needs of the robot it runs on.
 struct Surroundings {
   Evaluator& evaluator;
@@ -50,10 +53,10 @@ public:
 
   [[nodiscard]] bool ended() const { return places_.empty(); }
   [[nodiscard]] bool waits() const { return pause_ != Pause::none; }
-  // When a WAIT is over. Nothing of other pauses: those are looked at in every step.
+  // When a WAIT is over, or a THEN at the earliest. Nothing of other pauses: those are looked at in every step.
   [[nodiscard]] std::optional<Millis> wait_ends() const;
-  // Is what it waits for there?
-  [[nodiscard]] bool may_go_on(const Surroundings& around) const;
+  // Is what it waits for there? Notes it if it comes too soon.
+  [[nodiscard]] bool may_go_on(const Surroundings& around);
   // A FOLLOW has looked once more, and goes on following.
   [[nodiscard]] bool follows_on() const { return follows_on_; }
   // To the next pause, or the end.
@@ -77,6 +80,7 @@ private:
   }
   void leave_block();
   void pause(Pause why, Number duration);
+  bool comes_too_soon(Millis now);
 
   void run(const compiler::ir::Command& node);
   void run(const compiler::ir::Local& node);
@@ -95,7 +99,8 @@ private:
   std::vector<Place> places_;
   std::map<std::size_t, Number> locals_;
   Pause pause_ = Pause::none;
-  Millis paused_at_ = 0;
+  Millis paused_at_ = 0;  // or followed on
+  Millis waits_since_ = 0;
   std::optional<Millis> until_;
   const compiler::Expression* condition_ = nullptr;
   const compiler::ir::Follow* follow_ = nullptr;

@@ -34,13 +34,14 @@ void Interpreter::look_at(std::size_t r, std::vector<Claim>& claims) {
 
 std::optional<bool> Interpreter::wish(std::size_t r) const {
   const Rule& rule = rules_[r];
+  // "20 ms after it began", or "after the interruption at the earliest".
+  if (now_.at < rule.ran + kLeastPause) return std::nullopt;
   if (rule.waiting && now_.at <= rule.waiting->until) return rule.waiting->side;
   if (rule.rule->kind == vm::RuleKind::when_else && rule.last && rule.ran_side != rule.last)
     return cools(rule, *rule.last) ? std::nullopt : rule.last;
   const bool wants = rule.rule->kind == vm::RuleKind::while_ && rule.last == true;
   const bool free = !rule.running || rule.running->rests;
-  return wants && free && !cools(rule, true) && rule.ran < now_.at ? std::optional(true)
-                                                                   : std::nullopt;
+  return wants && free && !cools(rule, true) ? std::optional(true) : std::nullopt;
 }
 
 bool Interpreter::cools(const Rule& rule, bool side) const {
@@ -153,6 +154,7 @@ void Interpreter::interrupt(std::size_t r, const std::string& by) {
       actuators_.cancel(actuator, now_.at);
   }
   rule.running.reset();
+  rule.ran = now_.at;
 }
 
 // ---- SAFETY

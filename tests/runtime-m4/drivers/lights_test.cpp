@@ -44,7 +44,7 @@ struct Lit {
     feed(0, 6);
     run(10);
     feed(0, 20);
-    run(20);
+    run(40);
   }
   vm::Verdict activate(const std::vector<std::byte>& bytes) { return rig.activate(bytes); }
   void feed(std::uint8_t channel, int units) { rig.feed(channel, units); }
@@ -147,7 +147,7 @@ TEST_CASE("lights: BLINK closes and opens, so many times in that time") {
   Lit lit("SHOW face happy\nTHEN\nBLINK face 2 TIMES OVER 800ms");
   lit.run(3000);
   CHECK(lit.pictures() == std::vector<std::uint32_t>{kHappy, 0, kHappy, 0, kHappy});
-  CHECK(lit.rig.only("done") == "10 #2 done face\n811 #3 done face\n");
+  CHECK(lit.rig.only("done") == "10 #2 done face\n830 #3 done face\n");
 }
 
 TEST_CASE(

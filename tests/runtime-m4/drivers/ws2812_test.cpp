@@ -88,7 +88,7 @@ TEST_CASE("ws2812: the board has what robot.json says of the panel") {
 TEST_CASE("ws2812: it is dark until a picture comes, and told what changes alone") {
   Shown robot("SHOW face happy\nTHEN\nSHOW face happy\nTHEN\nWAIT 100ms\nSTOP face");
   CHECK(robot.told() == Pictures{0, happy()});
-  robot.pass(100 + test::kPanelTold);
+  robot.pass(100 + 2 * policy::kLeastPauseMs + test::kPanelTold);
   CHECK(robot.told() == Pictures{0, happy(), 0});
   robot.pass(1000);
   CHECK(robot.told() == Pictures{0, happy(), 0});

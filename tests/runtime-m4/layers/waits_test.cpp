@@ -37,13 +37,20 @@ TEST_CASE("THEN waits for all commands so far") {
         "90 #2 done a\n90 #2 finished r0\n");
 }
 
-TEST_CASE("THEN with nothing to wait for goes on in the next millisecond") {
+TEST_CASE("THEN with nothing to wait for goes on after 20 ms") {
   Robot robot(when_near("THEN\nMOVE a FOR 0ms\nTHEN\nLOG \"end\""));
   robot.feed(10, "X", 20);
   robot.run(1000);
   CHECK(robot.only("wait go_on log finished") ==
-        "10 #1 wait r0\n11 #2 go_on r0\n11 #2 wait r0\n12 #3 go_on r0\n12 #3 log \"end\"\n"
-        "12 #3 finished r0\n");
+        "10 #1 wait r0\n30 #2 go_on r0\n30 #2 wait r0\n50 #3 go_on r0\n50 #3 log \"end\"\n"
+        "50 #3 finished r0\n");
+}
+
+TEST_CASE("THEN after commands that are done sooner goes on after 20 ms, not later") {
+  Robot robot(when_near("MOVE a FOR 5ms\nTHEN\nMOVE a FOR 21ms\nTHEN\nLOG \"end\""));
+  robot.feed(0, "X", 20);
+  robot.run(1000);
+  CHECK(robot.only("done go_on") == "5 #1 done a\n20 #2 go_on r0\n41 #2 done a\n41 #3 go_on r0\n");
 }
 
 TEST_CASE("a response keeps its actuators while it waits") {
@@ -77,11 +84,30 @@ TEST_CASE("WAIT UNTIL goes on in the step in which its condition is true") {
         "200 #4 input Y 60\n200 #4 go_on r0\n200 #4 log \"end\"\n200 #4 finished r0\n");
 }
 
-TEST_CASE("WAIT UNTIL that is true already goes on in the next millisecond") {
+TEST_CASE("WAIT UNTIL that is true already goes on after 20 ms") {
   Robot robot(when_near("WAIT UNTIL near X > 5\nLOG \"end\""));
   robot.feed(7, "X", 20);
   robot.run(1000);
-  CHECK(robot.only("wait go_on log") == "7 #1 wait r0\n8 #2 go_on r0\n8 #2 log \"end\"\n");
+  CHECK(robot.only("wait go_on log") == "7 #1 wait r0\n27 #3 go_on r0\n27 #3 log \"end\"\n");
+}
+
+TEST_CASE("WAIT UNTIL misses nothing that is true for a moment in its first 20 ms") {
+  Robot robot(when_near("WAIT UNTIL far Y CHANGES BY 40%\nLOG \"end\""));
+  robot.feed(0, "X", 20);
+  robot.feed(1, "Y", 10);
+  robot.feed(3, "Y", 60);
+  robot.feed(5, "Y", 10);
+  robot.run(1000);
+  CHECK(robot.only("wait go_on log") == "0 #1 wait r0\n20 #7 go_on r0\n20 #7 log \"end\"\n");
+}
+
+TEST_CASE("WAIT UNTIL goes on at once when its condition becomes true after 20 ms") {
+  Robot robot(when_near("WAIT UNTIL far Y > 50\nWAIT UNTIL far Y < 50\nLOG \"end\""));
+  robot.feed(0, "X", 20);
+  robot.feed(20, "Y", 60);
+  robot.feed(40, "Y", 40);
+  robot.run(1000);
+  CHECK(robot.only("go_on log") == "20 #3 go_on r0\n40 #5 go_on r0\n40 #5 log \"end\"\n");
 }
 
 TEST_CASE("WITHIN ends a wait for what does not come") {

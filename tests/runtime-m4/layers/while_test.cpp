@@ -21,13 +21,50 @@ TEST_CASE("WHILE starts again when it finishes and still holds, and ends with it
         "250 #4 interrupt r0 by b0\n250 #4 cancel a\n");
 }
 
-TEST_CASE("a WHILE that takes no time starts once a millisecond") {
+TEST_CASE("a WHILE that takes no time starts every 20 ms") {
   Robot robot("WHILE near X > 10\nDO MOVE a FOR 0ms\nEND\n");
   robot.feed(10, "X", 20);
-  robot.feed(13, "X", 5);
+  robot.feed(55, "X", 5);
   robot.run(100);
   CHECK(robot.only("win interrupt cancel") ==
-        "10 #1 win r0 DO\n11 #2 win r0 DO\n12 #3 win r0 DO\n");
+        "10 #1 win r0 DO\n30 #2 win r0 DO\n50 #3 win r0 DO\n");
+}
+
+TEST_CASE("a round that takes 5 ms is finished then, and the next one begins 15 ms later") {
+  Robot robot("WHILE near X > 10\nDO MOVE a FOR 5ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.run(30);
+  CHECK(robot.only("win finished") ==
+        "0 #1 win r0 DO\n5 #1 finished r0\n20 #2 win r0 DO\n25 #2 finished r0\n");
+}
+
+TEST_CASE("rounds that wait are as short as their waits") {
+  Robot robot("WHILE near X > 10\nDO\nMOVE a FOR 1ms\nWAIT 5ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(12, "X", 0);
+  robot.run(30);
+  CHECK(robot.only("win interrupt") ==
+        "0 #1 win r0 DO\n5 #3 win r0 DO\n10 #5 win r0 DO\n12 #6 interrupt r0 by b0\n");
+}
+
+TEST_CASE(
+    "a condition that becomes true again starts a WHILE at once, after a short round as well") {
+  Robot robot("WHILE near X > 10\nDO MOVE a FOR 0ms\nEND\n");
+  robot.feed(0, "X", 20);
+  robot.feed(3, "X", 0);
+  robot.feed(6, "X", 20);
+  robot.run(30);
+  CHECK(robot.only("fire win") ==
+        "0 #1 fire r0 DO\n0 #1 win r0 DO\n6 #3 fire r0 DO\n6 #3 win r0 DO\n26 #4 win r0 DO\n");
+}
+
+TEST_CASE("a WHILE comes back 20 ms after it was interrupted, not sooner") {
+  Robot robot(high_and_low(when_far("MOVE a FOR 2ms"), rule("WHILE near X > 10", "MOVE a FOR 1s")));
+  robot.feed(0, "X", 20);
+  robot.feed(100, "Y", 60);
+  robot.run(200);
+  CHECK(robot.only("win finished") ==
+        "0 #1 win r1 DO\n100 #2 win r0 DO\n102 #2 finished r0\n120 #3 win r1 DO\n");
 }
 
 TEST_CASE("an unknown condition ends a WHILE, and known again it fires again") {
