@@ -22,6 +22,7 @@ bool BehaviorLayer::start(const LoadedProgram& program, Memory& memory, ProgramT
   retired_ = 0;
   units_ = memory.take_zero<policy::Part::behavior_units, Unit>();
   resume_points_ = memory.take<policy::Part::resume_points, ResumePoint>();
+  polls_since_ = memory.take<policy::Part::polls_since, std::uint32_t>();
   for (unsigned b = program.first_behavior(); b < program.image.behaviors.size(); ++b)
     if (!start_unit(b, threads)) return false;
   return true;
@@ -115,27 +116,52 @@ bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
          claim_for(rule, side, !layers_.triggers.has_triggered(rule), claim);
 }
 
-// A response that waits must do so at a place in the code.
+// A response that waits must do so at a place in the code; and one that polls, in a program in which one does.
 vm::Pause BehaviorLayer::checked_pause(const Result& result) const {
   if (result.pause == vm::Pause::ended || result.pause >= vm::Pause::count_)
     return vm::Pause::ended;
   const std::span<const vm::Word> code = program_->image.code;
   const bool inside = result.next >= code.data() && result.next < code.data() + code.size();
-  return inside ? result.pause : vm::Pause::ended;
+  const bool polls = result.pause != vm::Pause::until_time && result.pause != vm::Pause::until_done;
+  return inside && !(polls && polls_since_.empty()) ? result.pause : vm::Pause::ended;
 }
 
-// ResumePoint::ran, after a response that `before` says about has run.
-std::uint32_t BehaviorLayer::ran_at(vm::Pause pause, const ResumePoint& before) const {
-  if (pause == vm::Pause::still_polling || pause == vm::Pause::satisfied) return before.ran;
-  const bool has_waited = before.pause != vm::Pause::ended && pause == vm::Pause::ended;
-  return has_waited ? ResumePoint{}.ran : snapshot_->milliseconds();
+// When its response began, or went on and waited again; or was interrupted. While that is of no interest: long ago.
+std::uint32_t BehaviorLayer::ran_at(unsigned rule) const {
+  const ResumePoint& point = resume_points_[rule];
+  switch (point.pause) {
+    case vm::Pause::ended:
+      return point.time;
+    case vm::Pause::polling:
+    case vm::Pause::still_polling:
+      return polls_since_[rule];
+    case vm::Pause::until_done:
+    case vm::Pause::satisfied:
+      return point.time - policy::kLeastPauseMs;
+    default:
+      return snapshot_->milliseconds() - policy::kLeastPauseMs;
+  }
 }
 
-// Only a response that polls may have no time.
-std::uint32_t BehaviorLayer::wake_of(const Result& result, vm::Pause pause, std::uint32_t ran) {
-  if (pause == vm::Pause::still_polling) return result.wake;
-  const bool rests = pause == vm::Pause::until_done || pause == vm::Pause::satisfied;
-  return as_time(rests ? ran + policy::kLeastPauseMs : result.wake);
+// ResumePoint::time after a run. Only a response that polls may have none.
+std::uint32_t BehaviorLayer::time_of(unsigned rule, vm::Pause pause, bool has_waited) {
+  const std::uint32_t now = snapshot_->milliseconds();
+  const std::uint32_t wake = workspace_.result->wake;
+  switch (pause) {
+    case vm::Pause::ended:
+      return has_waited ? now - policy::kLeastPauseMs : now;
+    case vm::Pause::until_done:
+      return as_time(now + policy::kLeastPauseMs);
+    case vm::Pause::satisfied:
+      return as_time(polls_since_[rule] + policy::kLeastPauseMs);
+    case vm::Pause::still_polling:
+      return wake;
+    case vm::Pause::polling:
+      polls_since_[rule] = now;
+      [[fallthrough]];
+    default:
+      return as_time(wake);
+  }
 }
 
 // A response whose behaviour was stopped meanwhile has no effect.
@@ -153,13 +179,10 @@ void BehaviorLayer::conclude(unsigned rule) {
   if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);
   if (result.words != 0) put_out(result.words, layers_.arbiter.holding(rule).actuators);
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
-  point.ran = ran_at(pause, point);
+  point.time = time_of(rule, pause, waited);
   point.pause = pause;
   if (pause == vm::Pause::ended) return;
-  point = {.wake = wake_of(result, pause, point.ran),
-           .ran = point.ran,
-           .next = static_cast<std::uint16_t>(result.next - program_->image.code.data()),
-           .pause = pause};
+  point.next = static_cast<std::uint16_t>(result.next - program_->image.code.data());
   if (moved) trace.emit(EventKind::wait, trace.step(), rule);
 }
 

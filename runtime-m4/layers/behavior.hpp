@@ -40,12 +40,11 @@ public:
     Variables& variables;
     ControlLayer& control;
   };
-  // Where a response waits. Times are program time.
+  // Where a response waits.
   struct ResumePoint {
-    std::uint32_t wake = vm::Machine::kNever;
-    // When it began, or went on and waited again; or when it was interrupted. At first, and after a response that has
-    // waited: so long ago that it may begin.
-    std::uint32_t ran = 0U - policy::kLeastPauseMs;
+    // In program time. If it waits: when to look, or kNever. Otherwise: when it began, or was interrupted; at first, and if it
+    // had waited: so long ago that it may begin again.
+    std::uint32_t time = 0U - policy::kLeastPauseMs;
     std::uint16_t next = 0;  // a word of the code section
     vm::Pause pause = vm::Pause::ended;
   };
@@ -83,16 +82,16 @@ public:
   // Not done earlier, to keep the behaviours' stacks small.
   void conclude(unsigned rule);
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
-  void interrupted(unsigned rule) { resume_points_[rule] = {.ran = snapshot_->milliseconds()}; }
+  void interrupted(unsigned rule) { resume_points_[rule] = {.time = snapshot_->milliseconds()}; }
   [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
   // again in this millisecond. A response that went on to its end may begin again. One that checked its condition and
   // still waits checks it again at each reading, even at a second one in this millisecond.
-  bool has_run(unsigned rule, std::uint32_t now) const { return resume_points_[rule].ran == now; }
+  bool has_run(unsigned rule, std::uint32_t now) const { return ran_at(rule) == now; }
   // In how many milliseconds it may begin again without a new trigger, or go on after a WAIT UNTIL.
   std::uint8_t rest_left(unsigned rule, std::uint32_t now) const {
     static_assert(policy::kLeastPauseMs <= UINT8_MAX);
-    const std::uint32_t passed = now - resume_points_[rule].ran;
+    const std::uint32_t passed = now - ran_at(rule);
     const bool has_rested = passed >= policy::kLeastPauseMs;
     return static_cast<std::uint8_t>(has_rested ? 0 : policy::kLeastPauseMs - passed);
   }
@@ -149,8 +148,8 @@ private:
   static void add_word(const vm::WordEntry& word, Command& command);
   void stage_writes(unsigned behavior);
   vm::Pause checked_pause(const Result& result) const;
-  std::uint32_t ran_at(vm::Pause pause, const ResumePoint& before) const;
-  static std::uint32_t wake_of(const Result& result, vm::Pause pause, std::uint32_t ran);
+  std::uint32_t ran_at(unsigned rule) const;
+  std::uint32_t time_of(unsigned rule, vm::Pause pause, bool has_waited);
   void release(unsigned behavior);
   void release_to_run(unsigned rule, unsigned code);
 
@@ -170,6 +169,7 @@ private:
   std::uint16_t code_ = 0;
   std::span<Unit> units_;
   std::span<ResumePoint> resume_points_;
+  std::span<std::uint32_t> polls_since_;  // by rule; empty if none polls
 };
 
 }  // namespace robosync::layers

@@ -250,7 +250,7 @@ void ProcessingLayer::add_waiting(unsigned rule, Soonest& due) const {
   const BehaviorLayer::ResumePoint& point = layers_.behaviors.resume_point(rule);
   if (point.pause == vm::Pause::ended) return;
   if (point.pause == vm::Pause::until_done && layers_.arbiter.holding(rule).pending != 0) return;
-  due.at(point.wake);
+  due.at(point.time);
 }
 
 // A rule that wants to run and may, or whose other side must end for it.
@@ -551,7 +551,7 @@ bool ProcessingLayer::goes_on(unsigned rule) const {
   const BehaviorLayer::ResumePoint& point = layers_.behaviors.resume_point(rule);
   const std::uint32_t now = snapshot_.milliseconds();
   if (point.pause == vm::Pause::ended || layers_.behaviors.has_run(rule, now)) return false;
-  const bool due = point.wake != kNever && reached(point.wake, now);
+  const bool due = point.time != kNever && reached(point.time, now);
   switch (point.pause) {
     case vm::Pause::until_done:
       return due && layers_.arbiter.holding(rule).pending == 0;

@@ -100,6 +100,7 @@ enum class Count : std::uint32_t {
   tripped_words,
   rules,
   watching_rules,  // all rules if one is a WATCH, otherwise none
+  polling_rules,   // all rules if a response has a WAIT UNTIL or a FOLLOW, otherwise none
   delaying_rules,  // all rules if one has delays, otherwise none
   delays,
   comparisons,
@@ -137,6 +138,12 @@ inline unsigned safety_timer_words(const vm::Image& image) {
       words = timer.state + vm::timer_words(timer);
     }
   return words;
+}
+
+// Does a response wait for a condition?
+inline bool polls(const vm::Image& image) {
+  return std::ranges::any_of(image.code,
+                             [](vm::Word word) { return vm::opcode_of(word) == vm::Opcode::poll; });
 }
 
 // SAFETY's bytecode writes to one window. The parts before it end at a multiple of kStackUnit.
@@ -192,6 +199,7 @@ inline void count_behaviors(const vm::Image& image, Counts& counts) {
     if (has_delays(rule)) ++counts[Count::delays];
   }
   if (watches) counts[Count::watching_rules] = counts[Count::rules];
+  if (polls(image)) counts[Count::polling_rules] = counts[Count::rules];
   if (counts[Count::delays] != 0) counts[Count::delaying_rules] = counts[Count::rules];
   for (const vm::Behavior& behavior : image.behaviors)
     counts[Count::cells] += behavior.cells;
