@@ -10,6 +10,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/source/ascii.hpp"
 #include "compiler/units/foreign_units.hpp"
 
 namespace robosync::compiler {
@@ -48,6 +49,13 @@ struct Measured {
 const Unit* matching_unit(const json::Value& value, std::string_view written, const Unit& unit,
                           Diagnostics& diagnostics) {
   const Unit* found = find_unit(written);
+  if (found == nullptr && written.size() > 1 && written[0] == ',' && ascii::is_digit(written[1])) {
+    std::string better(value.text);
+    better[better.find(',')] = '.';
+    diagnostics.report(Code::E0304, "decimals follow a point, not a comma")
+        .label(value.span, "write `\"" + better + "\"`");
+    return nullptr;
+  }
   if (found == nullptr) {
     suggest_unit(diagnostics.report(Code::E0303, "there is no unit `" + std::string(written) + "`")
                      .label(value.span),

@@ -369,6 +369,16 @@ void WiringReader::report_taken(const OnBus& known, const Wiring& place, Span sp
       .label(known.span, "first used here", false);
 }
 
+void WiringReader::report_same(const OnBus& known, const Wiring& place, Span span) {
+  diagnostics_
+      .report(Code::W0225,
+              fmt::format("two sensors are one part: address 0x{:02x} on bus {} is used twice",
+                          place.place, place.bus))
+      .label(span)
+      .label(known.span, "first used here", false)
+      .helps("if the robot has two of these parts, give one of them another address");
+}
+
 // All sensors have been read before, so their addresses are known.
 Wiring WiringReader::read_display(Fields& fields, const WiringType& type) {
   report_foreign(fields, type);
@@ -471,6 +481,7 @@ void WiringReader::take_address(const Fields& fields, const Wiring& place, const
   const bool other = taken.device != nullptr && known.device != nullptr;
   if (!added && (alone || known.alone || (other && taken.device != known.device)))
     return report_taken(known, place, said->span);
+  if (!added && other && part == nullptr) report_same(known, place, said->span);
   if (known.device != nullptr || taken.device == nullptr) return;
   known.device = taken.device;
   known.span = taken.span;

@@ -108,6 +108,7 @@ private:
   [[nodiscard]] std::string owner_on_board(const Fields& fields, const Wiring& wiring,
                                            Span address) const;
   void report_taken(const OnBus& known, const Wiring& place, Span span);
+  void report_same(const OnBus& known, const Wiring& place, Span span);
   void take_chip(const ServoChip& chip, const json::Value& address, const json::Value& enable);
   void refuse_pins(const Fields& fields);
   void take_channel(const ServoChip& chip, std::uint16_t channel, Span span);

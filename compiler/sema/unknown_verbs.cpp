@@ -29,6 +29,10 @@ constexpr ForeignVerb kForeignVerbs[] = {
     {"SUBTRACT", "", "LOWER decreases a variable: `LOWER visits BY 1`"},
     {"DECREASE", "LOWER", "LOWER decreases a variable: `LOWER visits BY 1`"},
     {"DECREMENT", "LOWER", "LOWER decreases a variable: `LOWER visits BY 1`"},
+    {"BREAK", "", "a loop ends when its condition no longer holds: `REPEAT WHILE touch LEVEL > 3`"},
+    {"CONTINUE", "", "to leave out the rest of a round, put it into an IF"},
+    {"RETURN", "", "to leave out the rest of a response, put it into an IF"},
+    {"EXIT", "", "to leave out the rest of a response, put it into an IF"},
 };
 
 // Keywords that may begin a line or continue the one before.

@@ -89,6 +89,12 @@ private:
     if (block || !is_any_name(stop_, {"IMPORT", "INCLUDE", "USING", "REQUIRE"}) ||
         end_ != stop_ + 2)
       return std::nullopt;
+    if (is_any_name(stop_ + 1, {"TIME", "RANDOM", "MATH", "SYS", "OS", "MACHINE", "MICROBIT"})) {
+      report(Code::E0001, "RSL has no module " + quote(stop_ + 1) + " and needs none", here)
+          .helps("leave this line out")
+          .fix(span(stop_, end_), "", Applicability::likely);
+      return change(stop_, 2);
+    }
     report(Code::E0001, "a module is included with `USE`", here)
         .helps("write `USE " + std::string(text(stop_ + 1)) + "`")
         .fix(here, "USE", Applicability::likely);
@@ -334,7 +340,7 @@ private:
     return change(stop_, 1, {{Kinds::TO, tokens_[stop_].span}});
   }
 
-  // `x = 5`, `x += 1`, `x++`
+  // `x = 5`, `x += 1`, `x *= 2`, `x++`
   std::optional<Edit> assignment() {
     const std::size_t sign = statement_ + 1;
     const bool step = is(begin_, Kinds::AT) || is(begin_, Kinds::EXPECT);
@@ -342,6 +348,9 @@ private:
     if (!begins_with(Kinds::NAME) || step || !here) return std::nullopt;
     const bool adds = is(sign, Kinds::PLUS) || is(sign, Kinds::MINUS);
     if (is(sign, Kinds::EQUAL)) return assignment("SET ", " TO ", sign + 1);
+    const bool scales = is(sign, Kinds::STAR) || is(sign, Kinds::SLASH);
+    if (scales && touches_next(sign) && is(sign + 1, Kinds::EQUAL) && statement_ != 0)
+      return assignment("SET ", " TO " + text(statement_, sign + 1) + " ", sign + 2);
     if (!adds || !touches_next(sign)) return std::nullopt;
     const std::string word = is(sign, Kinds::PLUS) ? "RAISE " : "LOWER ";
     if (is(sign + 1, Kinds::EQUAL)) return assignment(word, " BY ", sign + 2);
@@ -354,7 +363,9 @@ private:
                                  std::size_t value) {
     const std::size_t end = statement_end();
     const std::string name(text(statement_));
-    const std::string written = value < end ? text(value, end) : "1";
+    const bool brackets = is(value - 2, Kinds::STAR) || is(value - 2, Kinds::SLASH);
+    std::string written = value < end ? text(value, end) : "1";
+    if (brackets && value + 1 < end) written = "(" + written + ")";
     const bool outside = statement_ == 0;
     const std::string better =
         outside ? "REMEMBER " + name + " = " + written : word + name + preposition + written;
@@ -393,7 +404,11 @@ private:
     }
     Diagnostic& d = report(Code::E0001, "this line ends with `DO`, not with a colon", here);
     d.fix(here, " DO");
-    if (!is(begin_, Kinds::WHEN) || ascii::same(text(begin_), "WHEN"))
+    const bool as_written =
+        std::all_of(tokens_.begin() + static_cast<std::ptrdiff_t>(begin_),
+                    tokens_.begin() + static_cast<std::ptrdiff_t>(stop_),
+                    [](const Token& token) { return token.span.begin < token.span.end; });
+    if (as_written && (!is(begin_, Kinds::WHEN) || ascii::same(text(begin_), "WHEN")))
       d.helps("write `" + text(begin_, stop_) + " DO`");
     return change(stop_, 1, {{Kinds::DO, here}});
   }
@@ -449,25 +464,26 @@ private:
 
   // `3,5%`: the comma touches the numbers on both sides.
   std::optional<Edit> decimal_comma() {
-    if (stop_ == 0 || !is(stop_, Kinds::COMMA)) return std::nullopt;
-    if (!is(stop_ - 1, Kinds::QUANTITY) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
-    const Span all = span(stop_ - 1, stop_ + 2);
+    const std::size_t comma = is(stop_, Kinds::NAME) && stop_ >= 3 ? stop_ - 2 : stop_;
+    if (comma == 0 || !is(comma, Kinds::COMMA)) return std::nullopt;
+    if (!is(comma - 1, Kinds::QUANTITY) || !is(comma + 1, Kinds::QUANTITY)) return std::nullopt;
+    const Span all = span(comma - 1, comma + 2);
     const auto ends_with_digit = [this](std::size_t at) {
       return text(at).back() >= '0' && text(at).back() <= '9';
     };
-    const std::size_t behind = tokens_[stop_ - 1].span.end + 1;
-    if (!ends_with_digit(stop_ - 1) || tokens_[stop_ + 1].span.begin != behind) return std::nullopt;
+    const std::size_t behind = tokens_[comma - 1].span.end + 1;
+    if (!ends_with_digit(comma - 1) || tokens_[comma + 1].span.begin != behind) return std::nullopt;
     // `2,5 s`
-    const bool apart = is(stop_ + 2, Kinds::NAME) && ends_with_digit(stop_ + 1);
-    std::string decimals = text(stop_ + 1, stop_ + 2);
+    const bool apart = is(comma + 2, Kinds::NAME) && ends_with_digit(comma + 1);
+    std::string decimals = text(comma + 1, comma + 2);
     Span whole = all;
     if (apart) {
-      const std::string_view unit = text(stop_ + 2), ours = unit_word(unit);
+      const std::string_view unit = text(comma + 2), ours = unit_word(unit);
       decimals += ours.empty() ? unit : ours;
-      whole.end = tokens_[stop_ + 2].span.end;
+      whole.end = tokens_[comma + 2].span.end;
     }
-    report_decimal_comma(diagnostics_, whole, text(stop_ - 1), decimals);
-    return change(stop_, apart ? 3 : 2);
+    report_decimal_comma(diagnostics_, whole, text(comma - 1), decimals);
+    return change(comma, apart ? 3 : 2);
   }
 };
 

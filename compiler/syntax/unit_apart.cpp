@@ -47,6 +47,10 @@ std::optional<Edit> explain_unit_apart(const Tokens& tokens, const SourceFile& s
   const std::size_t at = failure.stopped_at;
   // `60 deg/s` is another mistake: see misplaced_words.cpp.
   if (at + 1 < tokens.size() && tokens[at + 1].kind == Kinds::SLASH) return std::nullopt;
+  // `12,5 deg`: see foreign_habits.cpp.
+  if (at >= 3 && tokens[at - 2].kind == Kinds::COMMA && tokens[at - 3].kind == Kinds::QUANTITY &&
+      tokens[at - 3].span.end + 1 == tokens[at - 1].span.begin)
+    return std::nullopt;
   if (!report_unit_apart(tokens, source, at, diagnostics)) return std::nullopt;
   Edit leaves_out;
   leaves_out.what = Edit::What::remove;

@@ -49,6 +49,7 @@ public:
                             &WrongForms::counted_up,
                             &WrongForms::words_of_state,
                             &WrongForms::block_outside,
+                            &WrongForms::channel_of,
                             &WrongForms::half_comparison,
                             &WrongForms::within_alone,
                             &WrongForms::value_below,
@@ -191,6 +192,22 @@ private:
                          tokens_.begin() + static_cast<std::ptrdiff_t>(stop_));
     edit.inserted.push_back(missing(Kinds::CLOSE, stop_));
     return edit;
+  }
+
+  // `WHEN DISTANCE OF proximity < 20cm`
+  std::optional<Edit> channel_of() {
+    if (stop_ < begin_ + 2 || !is(stop_, Kinds::OF) || !is(stop_ - 1, Kinds::NAME) ||
+        !is(stop_ + 1, Kinds::NAME))
+      return std::nullopt;
+    const TokenKind before = tokens_[stop_ - 2].kind;
+    if (!begins_question(before) && !is_one_of(before, {Kinds::AND, Kinds::OR, Kinds::NOT}))
+      return std::nullopt;
+    const Span all = span(stop_ - 1, stop_ + 2);
+    const std::string better = text(stop_ + 1, stop_ + 2) + " " + text(stop_ - 1, stop_);
+    report(Code::E0001, "the sensor stands before what it measures", all)
+        .helps("write `" + better + "`")
+        .fix(all, better, Applicability::likely);
+    return change(stop_ - 1, 3, {tokens_[stop_ + 1], tokens_[stop_ - 1]});
   }
 
   // `touch LEVEL > 3 AND < 5`
