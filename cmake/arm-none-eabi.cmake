@@ -13,6 +13,7 @@ set(CMAKE_C_FLAGS_INIT "${m4_flags}")
 set(CMAKE_ASM_FLAGS_INIT "${m4_flags}")
 set(CMAKE_CXX_FLAGS_INIT
     "${m4_flags} -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -fno-unwind-tables -fno-asynchronous-unwind-tables")
-# Optimises for size by default on the board; files on the hot path set -O2 themselves.
-set(CMAKE_CXX_FLAGS_RELEASE "-Os -g" CACHE STRING "")
-set(CMAKE_C_FLAGS_RELEASE "-Os -g" CACHE STRING "")
+# Optimises for size by default on the board; files on the hot path set -O2 themselves. For a debugger, add -g, which takes a third
+# more time and changes no code: cmake --preset m4 -D CMAKE_CXX_FLAGS_RELEASE="-Os -g".
+set(CMAKE_CXX_FLAGS_RELEASE "-Os" CACHE STRING "")
+set(CMAKE_C_FLAGS_RELEASE "-Os" CACHE STRING "")
