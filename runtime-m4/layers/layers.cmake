@@ -85,10 +85,11 @@ target_sources(robosync_runtime PRIVATE
 if(NOT CMAKE_CROSSCOMPILING AND NOT ROBOSYNC_SANITIZE)
   target_compile_options(robosync_runtime PRIVATE -Os)
 endif()
-# On the board they are on the way of each sample of a motion sensor, or of a block of sound.
+# On the board they are on the way of each sample of a motion sensor, or of a block of sound. Link-time optimization would make
+# the spectrum cost more or less with each change elsewhere.
 if(CMAKE_CROSSCOMPILING)
-  set_source_files_properties(drivers/axes.cpp drivers/lsm303agr.cpp drivers/axes_chip.cpp drivers/spectrum.cpp
-                              PROPERTIES COMPILE_OPTIONS -O2)
+  set_source_files_properties(drivers/axes.cpp drivers/lsm303agr.cpp drivers/axes_chip.cpp PROPERTIES COMPILE_OPTIONS -O2)
+  set_source_files_properties(drivers/spectrum.cpp PROPERTIES COMPILE_OPTIONS "-O2;-fno-lto")
 endif()
 set_source_files_properties(layers/median.cpp PROPERTIES
   COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
