@@ -143,17 +143,20 @@ std::uint32_t BehaviorLayer::ran_at(unsigned rule) const {
   }
 }
 
-// ResumePoint::time after a run. Only a response that polls may have none.
+// ResumePoint::time after a run. Only a response that polls may have none. Whatever its thread says, no response goes on before
+// the next millisecond, or the step thread would never rest.
 std::uint32_t BehaviorLayer::time_of(unsigned rule, vm::Pause pause, bool has_waited) {
   const std::uint32_t now = snapshot_->milliseconds();
-  const std::uint32_t wake = workspace_.result->wake;
+  std::uint32_t wake = workspace_.result->wake;
+  if (wake != kNever && reached(wake, now)) [[unlikely]]
+    wake = now + 1;
   switch (pause) {
     case vm::Pause::ended:
       return has_waited ? now - policy::kLeastPauseMs : now;
     case vm::Pause::until_done:
       return as_time(now + policy::kLeastPauseMs);
     case vm::Pause::satisfied:
-      return as_time(polls_since_[rule] + policy::kLeastPauseMs);
+      return as_time(now + std::max<std::uint32_t>(rest_left(rule, now), 1));
     case vm::Pause::still_polling:
       return wake;
     case vm::Pause::polling:

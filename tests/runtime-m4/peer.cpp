@@ -1,6 +1,8 @@
-// Counts the VM's evaluations for the runtime. The linker's --wrap (CMakeLists.txt) inserts this
-// between them.
+// Counts the VM's evaluations for the runtime, and changes what its responses say. The linker's --wrap (CMakeLists.txt) inserts
+// this between them.
 #include "tests/runtime-m4/peer.hpp"
+
+#include <utility>
 
 #include "vm/interpreter.hpp"
 
@@ -8,10 +10,15 @@ namespace robosync::test {
 
 namespace {
 std::uint32_t evaluated = 0;
+std::function<void(vm::Progress&)> lies;
 }  // namespace
 
 std::uint32_t evaluations() {
   return evaluated;
+}
+
+void let_responses_lie(std::function<void(vm::Progress&)> lie) {
+  lies = std::move(lie);
 }
 
 }  // namespace robosync::test
@@ -26,7 +33,9 @@ Value counted_run(Machine& machine, const Word* code, Progress* progress) asm(
 // A condition has no Progress.
 Value counted_run(Machine& machine, const Word* code, Progress* progress) {
   if (progress == nullptr) ++test::evaluated;
-  return real_run(machine, code, progress);
+  const Value result = real_run(machine, code, progress);
+  if (progress != nullptr && test::lies) test::lies(*progress);
+  return result;
 }
 
 }  // namespace robosync::vm

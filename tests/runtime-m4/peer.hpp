@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 
 #include "runtime-m4/runtime.hpp"
+#include "vm/interpreter.hpp"
 
 namespace robosync {
 
@@ -46,7 +48,9 @@ struct RuntimePeer {
 
 namespace robosync::test {
 
-// The number of conditions that the VM has evaluated in this process: the linker wraps vm::run.
+// The linker wraps vm::run. The number of conditions that the VM has evaluated in this process:
 std::uint32_t evaluations();
+// From now on `lie` changes what each run of a response says of itself, as a damaged thread of a behaviour could; {}: no longer.
+void let_responses_lie(std::function<void(vm::Progress&)> lie);
 
 }  // namespace robosync::test

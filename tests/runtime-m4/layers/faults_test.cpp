@@ -273,3 +273,24 @@ TEST_CASE("a behaviour that says its rule wants the ELSE that it has not gets no
   CHECK(rig.only("input win lose interrupt fault") ==
         "0 #1 input X 15\n0 #1 win r0 DO\n10 #2 input X 18\n");
 }
+
+TEST_CASE("a response that says it went on long ago goes on once a millisecond at most") {
+  using robosync::vm::Pause;
+  const Pause pause = GENERATE(Pause::until_time, Pause::until_done, Pause::polling,
+                               Pause::still_polling, Pause::satisfied);
+  CAPTURE(static_cast<int>(pause));
+  unsigned runs = 0;
+  constexpr unsigned kTooMany = 10'000;  // then it tells the truth, so that the test ends
+  robosync::test::let_responses_lie([&](robosync::vm::Progress& progress) {
+    if (progress.pause == Pause::ended || ++runs > kTooMany) return;
+    progress.pause = pause;
+    progress.wake = 0;
+  });
+  robosync::test::Robot robot(
+      robosync::test::when_near("REPEAT FOREVER\nWAIT UNTIL far Y > 50 WITHIN 5ms\nWAIT 2ms\nEND"));
+  robot.feed(0, "X", 20);
+  robot.run(100);
+  robosync::test::let_responses_lie({});
+  CHECK(runs > 3);
+  CHECK(runs <= 101);
+}
