@@ -8,6 +8,7 @@ target_sources(robosync_compiler_small PRIVATE
   explain/rules.cpp
   explain/statements.cpp
   query/completion.cpp
+  query/configuration.cpp
   query/describe.cpp
   query/outline.cpp
   query/rename.cpp

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "compiler/query/configuration.hpp"
 #include "rsc/lsp/answers.hpp"
 
 namespace robosync::tool::lsp {
@@ -61,23 +62,30 @@ Json item_json(const query::Candidate& candidate, const Json& range, char quote,
   return item;
 }
 
+// With which quote a text of a program begins. Editors insert the closing one with it: then it is replaced, too.
+char quote_of(const SourceFile& source, Span& typed) {
+  const char first = typed.begin < source.text().size() ? source.text()[typed.begin] : '"';
+  const char quote = first == '\'' ? '\'' : '"';
+  const bool closed = typed.end < source.text().size() && typed.end > typed.begin &&
+                      source.text()[typed.end] == quote && first == quote;
+  if (closed) ++typed.end;
+  return quote;
+}
+
 }  // namespace
 
 Json completion(Desk desk, const Json& params) {
   const auto asked = asked_at(desk, params);
-  if (!asked || asked->file == compiler::kConfigurationFile) return nullptr;
+  if (!asked) return nullptr;
   const SourceMap& sources = asked->checked->result().sources;
-  const query::Completion found = query::complete(
-      asked->checked->project(), asked->checked->symbols(), asked->file, asked->offset);
   const SourceFile& source = sources.file(asked->file);
-  Span typed = found.typed;
-  const char first = typed.begin < source.text().size() ? source.text()[typed.begin] : '"';
-  const char quote = first == '\'' ? '\'' : '"';
-  // Editors insert the closing quote with the opening one.
-  const bool closed = typed.end < source.text().size() && typed.end > typed.begin &&
-                      source.text()[typed.end] == quote && first == quote;
-  if (closed) ++typed.end;
-  const Json range = range_json(sources, typed, desk.workspace.encoding());
+  const bool is_program = asked->file != compiler::kConfigurationFile;
+  query::Completion found =
+      is_program ? query::complete(asked->checked->project(), asked->checked->symbols(),
+                                   asked->file, asked->offset)
+                 : query::complete_configuration(source, asked->file, asked->offset);
+  const char quote = is_program ? quote_of(source, found.typed) : '"';
+  const Json range = range_json(sources, found.typed, desk.workspace.encoding());
   Json items = Json::array();
   for (const query::Candidate& candidate : found.candidates)
     items.push_back(item_json(candidate, range, quote, desk.client));
