@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compiler/config/names.hpp"
 #include "compiler/config/values.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "vm/drivers.hpp"
@@ -11,6 +12,27 @@ namespace robosync::compiler {
 namespace {
 
 constexpr std::string_view kVirtual = "VIRTUAL";
+
+struct CommonDevice {
+  std::string_view name, device;
+};
+constexpr CommonDevice kCommonDevices[] = {
+#define COMMON_DEVICE(name, device) {name, device},
+#include "compiler/config/common_devices.def"
+#undef COMMON_DEVICE
+};
+
+// `"device": "led"`
+bool helps_with_common_device(const json::Value& value, bool is_sensor, Diagnostic& diagnostic) {
+  const auto* const found = std::ranges::find_if(kCommonDevices, [&](const CommonDevice& one) {
+    return same_name(one.name, value.text) && find_device(one.device, is_sensor) != nullptr;
+  });
+  if (found == std::end(kCommonDevices)) return false;
+  const std::string device(found->device);
+  diagnostic.helps("such a part is the device `" + device + "`, see docs/devices.md#" + device)
+      .fix(value.span, "\"" + device + "\"", Applicability::likely);
+  return true;
+}
 
 bool is_kind(const Board::Part& part, bool is_sensor) {
   return find_device(part.device, is_sensor) != nullptr;
@@ -69,7 +91,8 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
   if (!owner.empty() && owner != board.name)
     d.helps("it is on the board " + std::string(owner) + ", but this robot has the board " +
             board.name);
-  else if (!did_you_mean(d, value.span, value.text, candidates, "\""))
+  else if (!helps_with_common_device(value, is_sensor, d) &&
+           !did_you_mean(d, value.span, value.text, candidates, "\""))
     d.helps("known devices: " + list_names(candidates));
 }
 

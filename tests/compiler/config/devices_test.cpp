@@ -436,3 +436,17 @@ TEST_CASE("mistakes in a board's profile are reported") {
   (void)read_board({"none", R"({"name": "none", "arena": {"begin": 0}, "flesh": 1})"}, misspelt);
   CHECK(misspelt.errors() == 2);
 }
+
+TEST_CASE("what parts are called elsewhere is no device here, and leads to one") {
+  const auto is_device = [](std::string_view name) {
+    return find_device(name, true) != nullptr || find_device(name, false) != nullptr;
+  };
+#define COMMON_DEVICE(name, device) \
+  {                                 \
+    INFO(name);                     \
+    CHECK_FALSE(is_device(name));   \
+    CHECK(is_device(device));       \
+  }
+#include "compiler/config/common_devices.def"
+#undef COMMON_DEVICE
+}
