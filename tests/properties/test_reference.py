@@ -2,9 +2,11 @@
 
 import json
 import os
+import re
 import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import comparison
 import differ
@@ -40,6 +42,40 @@ class Reference(unittest.TestCase):
         compared = sum(result.compared for result in results)
         self.assertGreaterEqual(compared, LEAST_COMPARED)
         self.assertLess(sum(result.ties for result in results) / compared, MOST_TIES)
+
+
+class Formatted(unittest.TestCase):
+    """rsc fmt changes what is between the words of a program, not what it does; and its own texts not at all."""
+
+    def test_drawn_programs(self):
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+            compared = sum(pool.map(self.check, range(PROGRAMS)))
+        self.assertGreater(compared, PROGRAMS / 2)
+
+    def check(self, seed):
+        text = drawn.program(seed)
+        with tempfile.TemporaryDirectory(prefix="robosync-formatted-") as folder:
+            before = self.code_of(text, Path(folder) / "before.rsl")
+            formatted = self.formatted("".join(line.strip() + "\n" for line in text.splitlines()), Path(folder) / "flat.rsl")
+            self.assertEqual(self.formatted(formatted, Path(folder) / "again.rsl"), formatted)
+            self.assertEqual(self.code_of(formatted, Path(folder) / "after.rsl"), before, text)
+        return before is not None
+
+    def formatted(self, text, file):
+        file.write_text(text)
+        done = comparison.call(comparison.RSC, "fmt", file)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return file.read_text()
+
+    def code_of(self, text, file):
+        """The image as `rsc dump` shows it, without its lines and the sums over its text; None: the compiler refuses it."""
+        file.write_text(text)
+        image = file.with_suffix(".rsb")
+        if comparison.call(comparison.RSC, "compile", file, "--config", drawn.CONFIG, "-o", image).returncode != 0:
+            return None
+        dumped = comparison.call(comparison.RSC, "dump", image)
+        self.assertEqual(dumped.returncode, 0, dumped.stderr)
+        return re.sub(r"\bline \d+", "", dumped.stdout.partition("\n")[2])
 
 
 class Comparison(unittest.TestCase):
