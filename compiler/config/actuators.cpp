@@ -295,7 +295,12 @@ void read_place(Fields& fields, const WiringType& type, const Board::Part* part,
     actuator.drive = read_drive(fields, wiring, actuator, diagnostics);
     read_wheel_encoders(fields, sensors, actuator, diagnostics);
   } else {
-    const Wiring place = wiring.read_actuator(fields, type, part, actuator.driver);
+    const bool of_board = type.name != "VIRTUAL" && (vm::drives_lights(actuator.driver) ||
+                                                     vm::drives_speaker(actuator.driver));
+    if (of_board) wiring.check_part(fields, part);
+    const Wiring place = of_board && part == nullptr
+                             ? Wiring{}
+                             : wiring.read_actuator(fields, type, part, actuator.driver);
     actuator.bus = place.bus;
     actuator.pin = place.place;
     if (type.name == "VIRTUAL") make_virtual(actuator);
@@ -304,8 +309,6 @@ void read_place(Fields& fields, const WiringType& type, const Board::Part* part,
     if (vm::drives_pin(actuator.driver)) wiring.check_output(fields, place, actuator.driver);
     if (vm::drives_player(actuator.driver)) wiring.check_line(fields, place);
     if (vm::drives_panel(actuator.driver)) wiring.check_panel(fields, place);
-    if (vm::drives_lights(actuator.driver) || vm::drives_speaker(actuator.driver))
-      wiring.check_part(fields, part);
   }
 }
 

@@ -24,6 +24,11 @@ void report_unknown(const json::Member& member, Object object, Diagnostics& diag
     if (key.object == object) candidates.emplace_back(key.name);
   Diagnostic& d = diagnostics.report(Code::E0202, "robot.json has no key `" + member.key + "` here")
                       .label(member.key_span);
+  if (object == Object::sensor && find_key(Object::channel, member.key) != nullptr) {
+    d.helps("it belongs to a channel of the sensor: `\"channels\": {\"LEVEL\": {\"" + member.key +
+            "\": …}}`");
+    return;
+  }
   if (!did_you_mean(d, member.key_span, member.key, candidates, "\""))
     d.helps("it can be " + list_names(candidates, "or"));
 }

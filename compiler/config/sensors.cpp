@@ -63,11 +63,12 @@ void read_labels(const json::Value& value, ChannelConfig& channel, Diagnostics& 
   NameIndex known;
   for (const json::Value& item : value.items)
     add_label(item, known, channel, diagnostics);
-  if (value.items.size() < 2 || value.items.size() > kMaxLabels)
-    diagnostics
-        .report(Code::E0205, "a channel can have 2 to " + std::to_string(kMaxLabels) +
-                                 " labels, but this one has " + std::to_string(value.items.size()))
-        .label(value.span);
+  if (value.items.size() >= 2 && value.items.size() <= kMaxLabels) return;
+  diagnostics
+      .report(Code::E0205, "a channel can have 2 to " + std::to_string(kMaxLabels) +
+                               " labels, but this one has " + std::to_string(value.items.size()))
+      .label(value.span);
+  channel.learns_words = true;  // so that the program's words are not reported as well
 }
 
 void read_truth(const json::Value& value, bool has_labels, ChannelConfig& channel,

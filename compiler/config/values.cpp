@@ -277,7 +277,17 @@ std::optional<std::uint16_t> read_rate(const json::Value& value, Diagnostics& di
     diagnostics.report(Code::E0205, "a rate must be above 0").label(value.span);
     return std::nullopt;
   }
-  return milliseconds((1000 * vm::kScale + *rate / 2) / *rate, value, diagnostics);
+  constexpr vm::Value kMost = 1000 * vm::kScale;
+  const std::int64_t ms = (kMost + std::int64_t{*rate} / 2) / *rate;
+  if (*rate > kMost || ms > UINT16_MAX) {
+    diagnostics
+        .report(Code::E0205, *rate > kMost
+                                 ? "a rate is 1000Hz at most: one reading in a millisecond"
+                                 : "a rate is 0.016Hz at least: one reading in a minute")
+        .label(value.span);
+    return std::nullopt;
+  }
+  return static_cast<std::uint16_t>(ms);
 }
 
 std::optional<std::uint16_t> read_milliseconds(const json::Value& value, Diagnostics& diagnostics) {

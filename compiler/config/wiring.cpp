@@ -239,7 +239,7 @@ void WiringReader::check_part(const Fields& fields, const Board::Part* part) {
   const auto* device = fields.find("device");
   if (part != nullptr || device == nullptr) return;
   diagnostics_
-      .report(Code::E0205, "a " + device->text + " is a part of a board, so it cannot be wired")
+      .report(Code::E0205, "`" + device->text + "` is a part of a board, so it cannot be wired")
       .label(device->span)
       .helps("boards that have one: " + boards_with(device->text));
 }

@@ -1,6 +1,8 @@
 #include "compiler/sema/limits.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "compiler/diagnostics/nearest.hpp"
 
@@ -60,6 +62,8 @@ void Limits::report_unknown(const ast::Limit& limit) {
 }
 
 void Limits::limit_speed(const ast::Limit& limit, const Target& target, ir::Program& program) {
+  const Unit* unit = nullptr;
+  std::optional<Typed> speed;
   for (const std::size_t place : target.actuators) {
     ActuatorConfig& actuator = robot_.actuators[place];
     if (actuator.at_unit == nullptr) {
@@ -67,8 +71,10 @@ void Limits::limit_speed(const ast::Limit& limit, const Target& target, ir::Prog
           .label(limit.actuator.span);
       return;
     }
-    const auto speed = expressions_.constant_amount(
-        *limit.value, {actuator.at_unit, "SPEED of " + actuator.name.text, actuator.name.span});
+    // Once for a group, so that its members do not repeat what there is to report.
+    if (std::exchange(unit, actuator.at_unit) != actuator.at_unit)
+      speed = expressions_.constant_amount(
+          *limit.value, {actuator.at_unit, "SPEED of " + actuator.name.text, actuator.name.span});
     if (!speed) return;
     if (speed->code.constant <= 0) {
       diagnostics_.report(Code::E0509, "a speed must be above 0").label(limit.value->span);

@@ -195,10 +195,11 @@ void lint_bands(const ast::Check& node, const ir::Check& check, const Typed& inp
     left = without(left, band);
   }
   if (left.empty()) return;
-  diagnostics
-      .report(Code::W0201, "from " + format_value(left.front().low, unit) + " to " +
-                               format_value(left.front().high, unit) + ", " + node.name.shown() +
-                               " is unknown")
+  const auto [low, high] = left.front();
+  const std::string from = format_value(low, unit);
+  const std::string gap =
+      low == high ? "at exactly " + from : "from " + from + " to " + format_value(high, unit);
+  diagnostics.report(Code::W0201, gap + ", " + node.name.shown() + " is unknown")
       .label(node.name.span)
       .helps("add a band OTHERWISE, or close the gap between two bands");
 }

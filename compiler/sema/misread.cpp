@@ -28,6 +28,19 @@ bool is_text(const ast::Argument& argument) {
          std::holds_alternative<ast::Text>(argument.value);
 }
 
+// This word and those that follow it: `hello there`.
+std::string words_from(const ast::Command& command, const ast::Word& first) {
+  std::string words(first.name.text);
+  bool follows = false;
+  for (const ast::Argument& argument : command.arguments) {
+    const auto* const word = std::get_if<ast::Word>(&argument.value);
+    if (follows && (word == nullptr || argument.preposition != ast::Preposition::none)) break;
+    if (follows) words += " " + std::string(word->name.text);
+    follows = follows || word == &first;
+  }
+  return words;
+}
+
 Span both(const ast::Argument& first, const ast::Argument& second) {
   return {first.span.file, first.span.begin, second.span.end};
 }
@@ -358,7 +371,7 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
   if (d.help.empty() && to.verb.texts == Texts::listed)
     help_with_files(to, d);
   else if (d.help.empty() && to.verb.texts == Texts::any)
-    d.helps("put words to say or play in quotes: `\"" + std::string(word.name.text) + "\"`");
+    d.helps("put words to say or play in quotes: `\"" + words_from(to.command, word) + "\"`");
 }
 
 // `SHOW face "happy"`, `SHOW face ANY names`

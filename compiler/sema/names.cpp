@@ -8,6 +8,8 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/syntax/functions.hpp"
 #include "compiler/syntax/walk.hpp"
+#include "compiler/units/foreign_units.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 
@@ -31,15 +33,23 @@ constexpr WordAsName kWordsAsNames[] = {
     {"RANDOM", "`RANDOM` takes two numbers: `RANDOM(1, 6)`"},
 };
 
+// `EVERY second DO`. One letter is more likely a name.
+bool helps_with_unit(std::string_view word, Diagnostic& d) {
+  const Unit* const known = find_unit(word);
+  const std::string unit(known != nullptr ? known->spelling : unit_word(word));
+  if (word.size() < 3 || unit.empty()) return false;
+  d.helps("a unit follows a number: `1" + unit + "`");
+  return true;
+}
+
 // A word of RSL, a verb or a function in the place of a sensor.
 bool helps_with_other_word(const Names& names, const ast::Operand& operand, Diagnostic& d) {
   const std::string_view word = operand.name.text;
   if (!operand.channel) {
     const auto* const one = std::ranges::find_if(
         kWordsAsNames, [&](const WordAsName& known) { return same_name(known.word, word); });
-    if (one == std::end(kWordsAsNames)) return false;
-    d.helps(std::string(one->help));
-    return true;
+    if (one != std::end(kWordsAsNames)) d.helps(std::string(one->help));
+    return one != std::end(kWordsAsNames) || helps_with_unit(word, d);
   }
   const FunctionName* const function = find_function(word);
   if (names.is_verb(word))
@@ -164,6 +174,17 @@ bool Names::report_known(const ast::Name& name) {
   return true;
 }
 
+// `MOVE arm TO SLOWLY`
+bool Names::help_with_word(Diagnostic& d, const ast::Name& name) const {
+  for (const ActuatorConfig& actuator : robot_.actuators)
+    for (const WordConfig& word : actuator.words) {
+      if (word.text || !same_name(word.name, name.text)) continue;
+      d.helps(name.shown() + " is a word of " + actuator.name.shown() + ", not a number");
+      return true;
+    }
+  return false;
+}
+
 void Names::report_unknown(const ast::Operand& operand) {
   if (report_missing(operand)) return;
   if (!operand.channel && report_known(operand.name)) return;
@@ -171,6 +192,7 @@ void Names::report_unknown(const ast::Operand& operand) {
   Diagnostic& d = diagnostics_.report(Code::E0501, "there is no " + what + operand.name.shown())
                       .label(operand.name.span);
   if (helps_with_other_word(*this, operand, d)) return;
+  if (!operand.channel && help_with_word(d, operand.name)) return;
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
   if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
   if (help_with_sensor(d, operand.name)) return;

@@ -186,6 +186,7 @@ private:
   std::optional<ChannelRef> channel_of_sensor(std::size_t sensor, const ast::Operand& operand);
   bool report_missing(const ast::Operand& operand);
   void report_unknown(const ast::Operand& operand);
+  bool help_with_word(Diagnostic& d, const ast::Name& name) const;
   bool report_known(const ast::Name& name);
 
   const Robot& robot_;

@@ -50,6 +50,7 @@ public:
                             &WrongForms::words_of_state,
                             &WrongForms::block_outside,
                             &WrongForms::channel_of,
+                            &WrongForms::priority_of_safety,
                             &WrongForms::half_comparison,
                             &WrongForms::within_alone,
                             &WrongForms::value_below,
@@ -208,6 +209,17 @@ private:
         .helps("write `" + better + "`")
         .fix(all, better, Applicability::likely);
     return change(stop_ - 1, 3, {tokens_[stop_ + 1], tokens_[stop_ - 1]});
+  }
+
+  // `SAFETY careful PRIORITY 99`
+  std::optional<Edit> priority_of_safety() {
+    if (!begins_with(Kinds::SAFETY) || !is(stop_, Kinds::PRIORITY)) return std::nullopt;
+    const std::size_t end = is(stop_ + 1, Kinds::QUANTITY) ? stop_ + 2 : stop_ + 1;
+    const Span all = span(stop_, end);
+    report(Code::E0009, "SAFETY has no priority: it ranks above every behaviour", all)
+        .helps("leave this out")
+        .fix(all, "", Applicability::likely);
+    return change(stop_, end - stop_);
   }
 
   // `touch LEVEL > 3 AND < 5`

@@ -1,4 +1,5 @@
 // rsc ports [--format human|json]
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -53,10 +54,14 @@ void ports(Format format) {
     std::cout << line_of(seen) << '\n';
   for (const SeenDrive& seen : drives)
     std::cout << fmt::format("{:<20}  the drive of a {}\n", seen.place.string(), seen.board);
-  if (found.empty()) {
-    std::cerr << "rsc: no serial ports found; is the board plugged in? (`scripts/robot` starts an "
-                 "emulated one)\n";
-  }
+  const bool seen = !drives.empty() || std::ranges::any_of(found, [](const SeenPort& port) {
+    return port.answer || !port.may_be.empty();
+  });
+  if (!seen)
+    std::cerr << fmt::format(
+        "rsc: no {} found; is the board plugged in? (`scripts/robot` starts an "
+        "emulated one)\n",
+        found.empty() ? "serial ports" : "board");
 }
 
 }  // namespace
