@@ -20,21 +20,21 @@ struct Shape {
 };
 
 struct Part {
-  Object parent;
   std::string_view key;
+  Object parent;
   Shape shape;
 };
 constexpr Part kParts[] = {
-    {Object::robot, "sensors", {{}, Object::sensor}},
-    {Object::robot, "actuators", {{}, Object::actuator}},
-    {Object::robot, "behaviors", {{}, Object::behavior}},
-    {Object::robot, "algorithms", {{}, Object::algorithm}},
-    {Object::robot, "scheduler", {Object::scheduler}},
-    {Object::robot, "safety", {Object::safety}},
-    {Object::sensor, "channels", {{}, Object::channel}},
-    {Object::actuator, "sounds", {{}, Object::sound}},
-    {Object::actuator, "limits", {Object::limits}},
-    {Object::actuator, "trim", {Object::trim}},
+    {"sensors", Object::robot, {{}, Object::sensor}},
+    {"actuators", Object::robot, {{}, Object::actuator}},
+    {"behaviors", Object::robot, {{}, Object::behavior}},
+    {"algorithms", Object::robot, {{}, Object::algorithm}},
+    {"scheduler", Object::robot, {Object::scheduler}},
+    {"safety", Object::robot, {Object::safety}},
+    {"channels", Object::sensor, {{}, Object::channel}},
+    {"sounds", Object::actuator, {{}, Object::sound}},
+    {"limits", Object::actuator, {Object::limits}},
+    {"trim", Object::actuator, {Object::trim}},
 };
 
 // An object or a list that is open at a place.
