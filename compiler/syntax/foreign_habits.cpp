@@ -5,6 +5,7 @@
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
+#include "compiler/syntax/unit_apart.hpp"
 #include "compiler/units/foreign_units.hpp"
 
 namespace robosync::compiler {
@@ -464,19 +465,12 @@ private:
 
   // `3,5%`: the comma touches the numbers on both sides.
   std::optional<Edit> decimal_comma() {
-    const std::size_t comma = is(stop_, Kinds::NAME) && stop_ >= 3 ? stop_ - 2 : stop_;
-    if (comma == 0 || !is(comma, Kinds::COMMA)) return std::nullopt;
-    if (!is(comma - 1, Kinds::QUANTITY) || !is(comma + 1, Kinds::QUANTITY)) return std::nullopt;
-    const Span all = span(comma - 1, comma + 2);
-    const auto ends_with_digit = [this](std::size_t at) {
-      return text(at).back() >= '0' && text(at).back() <= '9';
-    };
-    const std::size_t behind = tokens_[comma - 1].span.end + 1;
-    if (!ends_with_digit(comma - 1) || tokens_[comma + 1].span.begin != behind) return std::nullopt;
+    const std::size_t comma = is(stop_, Kinds::NAME) && stop_ >= 2 ? stop_ - 2 : stop_;
+    if (!is_decimal_comma(tokens_, source_, comma)) return std::nullopt;
     // `2,5 s`
-    const bool apart = is(comma + 2, Kinds::NAME) && ends_with_digit(comma + 1);
+    const bool apart = is_behind_digits(tokens_, source_, comma + 2);
     std::string decimals = text(comma + 1, comma + 2);
-    Span whole = all;
+    Span whole = span(comma - 1, comma + 2);
     if (apart) {
       const std::string_view unit = text(comma + 2), ours = unit_word(unit);
       decimals += ours.empty() ? unit : ours;

@@ -4,17 +4,31 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/units/foreign_units.hpp"
 #include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 
+namespace {
+
+bool ends_with_digit(const Token& token, const SourceFile& source) {
+  const std::string_view number = source.text(token.span);
+  return token.kind == Kinds::QUANTITY && !number.empty() && ascii::is_digit(number.back());
+}
+
+}  // namespace
+
 bool is_behind_digits(const Tokens& tokens, const SourceFile& source, std::size_t at) {
-  if (at == 0 || at >= tokens.size() || tokens[at].kind != Kinds::NAME ||
-      tokens[at - 1].kind != Kinds::QUANTITY)
-    return false;
-  const std::string_view number = source.text(tokens[at - 1].span);
-  return !number.empty() && number.back() >= '0' && number.back() <= '9';
+  return at > 0 && at < tokens.size() && tokens[at].kind == Kinds::NAME &&
+         ends_with_digit(tokens[at - 1], source);
+}
+
+bool is_decimal_comma(const Tokens& tokens, const SourceFile& source, std::size_t comma) {
+  if (comma == 0 || comma + 1 >= tokens.size()) return false;
+  const Token &whole = tokens[comma - 1], &decimals = tokens[comma + 1];
+  return tokens[comma].kind == Kinds::COMMA && ends_with_digit(whole, source) &&
+         decimals.kind == Kinds::QUANTITY && decimals.span.begin == whole.span.end + 1;
 }
 
 bool report_unit_apart(const Tokens& tokens, const SourceFile& source, std::size_t at,
@@ -48,9 +62,7 @@ std::optional<Edit> explain_unit_apart(const Tokens& tokens, const SourceFile& s
   // `60 deg/s` is another mistake: see misplaced_words.cpp.
   if (at + 1 < tokens.size() && tokens[at + 1].kind == Kinds::SLASH) return std::nullopt;
   // `12,5 deg`: see foreign_habits.cpp.
-  if (at >= 3 && tokens[at - 2].kind == Kinds::COMMA && tokens[at - 3].kind == Kinds::QUANTITY &&
-      tokens[at - 3].span.end + 1 == tokens[at - 1].span.begin)
-    return std::nullopt;
+  if (at >= 2 && is_decimal_comma(tokens, source, at - 2)) return std::nullopt;
   if (!report_unit_apart(tokens, source, at, diagnostics)) return std::nullopt;
   Edit leaves_out;
   leaves_out.what = Edit::What::remove;

@@ -14,6 +14,10 @@ namespace robosync::compiler {
 // Is the token at `at` a name directly after digits?
 [[nodiscard]] bool is_behind_digits(const Tokens& tokens, const SourceFile& source, std::size_t at);
 
+// `3,5`: is the token at `comma` a comma that touches digits on its left and a number on its right?
+[[nodiscard]] bool is_decimal_comma(const Tokens& tokens, const SourceFile& source,
+                                    std::size_t comma);
+
 // Reports it if that name is a unit, also of other languages.
 bool report_unit_apart(const Tokens& tokens, const SourceFile& source, std::size_t at,
                        Diagnostics& diagnostics);

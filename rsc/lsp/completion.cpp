@@ -62,14 +62,16 @@ Json item_json(const query::Candidate& candidate, const Json& range, char quote,
   return item;
 }
 
-// With which quote a text of a program begins. Editors insert the closing one with it: then it is replaced, too.
-char quote_of(const SourceFile& source, Span& typed) {
-  const char first = typed.begin < source.text().size() ? source.text()[typed.begin] : '"';
-  const char quote = first == '\'' ? '\'' : '"';
-  const bool closed = typed.end < source.text().size() && typed.end > typed.begin &&
-                      source.text()[typed.end] == quote && first == quote;
-  if (closed) ++typed.end;
-  return quote;
+char sign_at(const SourceFile& source, std::size_t place) {
+  return place < source.text().size() ? source.text()[place] : '\0';
+}
+
+// Editors insert the closing quote with the opening one: then it is replaced, too.
+Span with_closing_quote(const SourceFile& source, Span typed, char quote) {
+  if (typed.end > typed.begin && sign_at(source, typed.begin) == quote &&
+      sign_at(source, typed.end) == quote)
+    ++typed.end;
+  return typed;
 }
 
 }  // namespace
@@ -80,12 +82,13 @@ Json completion(Desk desk, const Json& params) {
   const SourceMap& sources = asked->checked->result().sources;
   const SourceFile& source = sources.file(asked->file);
   const bool is_program = asked->file != compiler::kConfigurationFile;
-  query::Completion found =
+  const query::Completion found =
       is_program ? query::complete(asked->checked->project(), asked->checked->symbols(),
                                    asked->file, asked->offset)
                  : query::complete_configuration(source, asked->file, asked->offset);
-  const char quote = is_program ? quote_of(source, found.typed) : '"';
-  const Json range = range_json(sources, found.typed, desk.workspace.encoding());
+  const char quote = is_program && sign_at(source, found.typed.begin) == '\'' ? '\'' : '"';
+  const Span typed = is_program ? with_closing_quote(source, found.typed, quote) : found.typed;
+  const Json range = range_json(sources, typed, desk.workspace.encoding());
   Json items = Json::array();
   for (const query::Candidate& candidate : found.candidates)
     items.push_back(item_json(candidate, range, quote, desk.client));

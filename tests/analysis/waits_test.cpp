@@ -286,6 +286,20 @@ Periods times_of_going_on(const test::Robot& robot, const Wanted& wanted) {
   return times;
 }
 
+// In any stretch, of each source one more at most than its periods that fit.
+void check_no_more_often(const Periods& times, const Periods& said) {
+  for (std::size_t i = 0; i < times.size(); ++i)
+    for (std::size_t j = i; j < std::min(times.size(), i + 50); ++j) {
+      std::uint64_t most = 0;
+      for (const std::uint64_t period : said)
+        most += (times[j] - times[i]) / period + 1;
+      if (j - i + 1 > most) {
+        CAPTURE(times[i], times[j], j - i + 1, most);
+        FAIL();
+      }
+    }
+}
+
 }  // namespace
 
 TEST_CASE("no response goes on more often than is said") {
@@ -309,17 +323,7 @@ TEST_CASE("no response goes on more often than is said") {
       robot.feed(ms, "X", static_cast<int>(random() % 100));
     robot.run(4000);
     const Periods times = times_of_going_on(robot, [](unsigned rule) { return rule == 0; });
-    // In any stretch, of each source one more at most than its periods that fit.
-    for (std::size_t i = 0; i < times.size(); ++i)
-      for (std::size_t j = i; j < std::min(times.size(), i + 50); ++j) {
-        std::uint64_t most = 0;
-        for (const std::uint64_t period : said)
-          most += (times[j] - times[i]) / period + 1;
-        if (j - i + 1 > most) {
-          CAPTURE(times[i], times[j], j - i + 1, most);
-          FAIL();
-        }
-      }
+    check_no_more_often(times, said);
   }
   CHECK(bounded > 20);
 }
@@ -408,16 +412,7 @@ TEST_CASE("no response begins or goes on by itself more often than is said") {
     const auto doubled = std::ranges::unique(times);
     times.erase(doubled.begin(), doubled.end());
     many += times.size() > 30 ? 1 : 0;
-    for (std::size_t i = 0; i < times.size(); ++i)
-      for (std::size_t j = i; j < std::min(times.size(), i + 50); ++j) {
-        std::uint64_t most = 0;
-        for (const std::uint64_t period : said)
-          most += (times[j] - times[i]) / period + 1;
-        if (j - i + 1 > most) {
-          CAPTURE(times[i], times[j], j - i + 1, most);
-          FAIL();
-        }
-      }
+    check_no_more_often(times, said);
   }
   CHECK(many > 100);
 }
