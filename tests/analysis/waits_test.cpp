@@ -393,10 +393,14 @@ TEST_CASE("no response begins or goes on by itself more often than is said") {
   unsigned many = 0;
   for (unsigned p = 0; p < 300; ++p) {
     const std::string head = drawn_head(random);
-    const std::string program = fmt::format(
-        "BEHAVIOR high PRIORITY 60\nWHEN far Y CHANGES BY 30% DO\nMOVE a FOR {}ms\nEND\nEND\n"
-        "BEHAVIOR low PRIORITY 40\n{} DO\n{}MOVE a FOR {}ms\nEND\nEND\n",
-        random() % 30, head, drawn_short(random, 2), random() % 30);
+    // What may not lose its actuator begins again for other reasons, and is worked out by others.
+    const bool may_lose = random() % 2 == 0;
+    const std::string high = fmt::format(
+        "BEHAVIOR high PRIORITY 60\nWHEN far Y CHANGES BY 30% DO\nMOVE a FOR {}ms\nEND\nEND\n",
+        random() % 30);
+    const std::string program =
+        fmt::format("{}BEHAVIOR low PRIORITY 40\n{} DO\n{}MOVE a FOR {}ms\nEND\nEND\n",
+                    may_lose ? high : "\n\n\n\n\n", head, drawn_short(random, 2), random() % 30);
     INFO(program);
     if (compiler::compile({"robot.rsl", program}, {"robot.json", test::kPlainRobot})
             .diagnostics.errors() > 0)
@@ -407,7 +411,7 @@ TEST_CASE("no response begins or goes on by itself more often than is said") {
       if (const char* const channel = random() % 2 == 0 ? "X" : "Y"; robot.has(channel))
         robot.feed(ms, channel, static_cast<int>(random() % 100));
     robot.run(3000);
-    Periods times = times_by_itself(robot, '1', head.starts_with("EVERY"));
+    Periods times = times_by_itself(robot, may_lose ? '1' : '0', head.starts_with("EVERY"));
     // A WHILE may end a round and begin the next one in the same millisecond: both count as one.
     const auto doubled = std::ranges::unique(times);
     times.erase(doubled.begin(), doubled.end());
