@@ -64,6 +64,13 @@ class OfMemory(Encoder):
     def turn(self, edges):
         self.wires.write(symbols(FIRMWARE)["robosync_virtual_edges"], (edges & 0xFFFF_FFFF).to_bytes(4, "little"))
 
+    def pass_a_sample(self):
+        """Otherwise both turns could be one sample's, or two's."""
+        with self.debugger() as debugger:
+            for _ in range(3 * SAMPLE_MS // KICK_MS):
+                debugger.run_to(place_of(KICK), lambda: None)
+                debugger.step()
+
     def test_edges_are_a_distance_and_too_many_are_lost(self):
         reader = self.begin()
         for edges in (1, 40, -3):
@@ -71,9 +78,12 @@ class OfMemory(Encoder):
             self.await_distance(reader, edges)
         self.await_event(reader, event="log", text="far")
         self.await_event(reader, event="log", text="back")
-        self.turn(most_edges() - 2)
-        self.turn(most_edges() + 100)
-        self.await_distance(reader, -3)
+        lost = most_edges() + 1
+        self.turn(-3 + lost)
+        self.pass_a_sample()
+        for edges in (-2, -2 + most_edges()):
+            self.turn(edges + lost)
+            self.await_distance(reader, edges)
 
 
 class OfEdges(Encoder):
