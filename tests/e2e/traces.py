@@ -41,7 +41,7 @@ class TraceTest(RobotTest):
             lost = self.status()["lost_events"] - lost_before
             if "already past" in errors:
                 lead_ms *= 3
-            elif lost == 0:
+            elif lost == 0 and "has fallen silent" not in errors:  # it has answered since: QEMU stood still
                 break
         self.assertEqual(lost, 0, "this machine is too busy to read the board's trace")
         self.assertGreater(len(expected), len(set(r.at_ms for r in readings)) // 2)
