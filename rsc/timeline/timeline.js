@@ -4,8 +4,12 @@
 
 const run = JSON.parse(document.getElementById("run").textContent);
 const SVG = "http://www.w3.org/2000/svg";
-// Colours that people with any kind of colour vision can tell apart (Okabe and Ito); from the ninth behaviour on, dashed.
+// Colours by Okabe and Ito, and hatchings for who sees or prints no colours: paths in a cell of 8 by 8 pixels. From the ninth
+// behaviour on, the outlines are dashed.
 const COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#b8a800", "#777777"];
+const RISING = "M-1,1l2,-2M0,8l8,-8M7,9l2,-2", FALLING = "M-1,7l2,2M0,0l8,8M7,-1l2,2";
+const HATCHINGS = ["", RISING, "M3.5,0v8", FALLING, "M0,3.5h8", RISING + FALLING, "M1,1.5h2v1h-2M5,5.5h2v1h-2", "M3.5,0v8M0,3.5h8"];
+const PAPER = 540;  // pixels for a lane that is printed: paper is that wide beside the names
 const BEGIN = run.begin_us, END = Math.max(run.end_us, BEGIN + 1);
 const MARGIN = 8;  // pixels at both ends of a lane
 const steps = new Map(run.steps.map(([step, ...words]) => [step, words]));
@@ -43,9 +47,21 @@ function element(name, attributes = {}, text = null) {
 }
 
 function paint(behavior) {
-  const colour = behavior < 0 ? "#777777" : COLOURS[behavior % COLOURS.length];
+  const kind = behavior % COLOURS.length;
   const dashed = behavior >= COLOURS.length ? "5 3" : "none";
-  return {"fill": colour, "fill-opacity": 0.3, "stroke": colour, "stroke-dasharray": dashed};
+  return behavior < 0 ? {"fill": "#fff", "stroke": "#000"} :
+    {"fill": `url(#hatching${kind})`, "stroke": COLOURS[kind], "stroke-dasharray": dashed};
+}
+
+function hatchings() {
+  const made = element("svg", {width: 0, height: 0, style: "position: absolute"});
+  COLOURS.forEach((colour, kind) => {
+    const cell = element("pattern", {id: "hatching" + kind, width: 8, height: 8, patternUnits: "userSpaceOnUse"});
+    cell.append(element("path", {d: "M0,0h8v8h-8z", fill: colour, "fill-opacity": 0.25}),
+      element("path", {d: HATCHINGS[kind], stroke: colour}));
+    made.append(cell);
+  });
+  return made;
 }
 
 const widthOf = lane => lane.width - 2 * MARGIN;
@@ -62,11 +78,24 @@ function firstFrom(items, key, time) {
   return low;
 }
 
+const ruler = document.createElement("canvas").getContext("2d");
+ruler.font = "12px system-ui, sans-serif";
+const lengthOf = text => ruler.measureText(text).width;
+
+// A text, shortened if there is no room for all of it. Returns whether it is drawn: not where another one is, and not if
+// next to nothing would be left of it.
 function label(lane, x, y, room, text, quiet = false) {
-  if (room < 24) return;
-  const most = Math.floor(room / 7);
-  const short = text.length <= most ? text : text.slice(0, Math.max(most - 1, 1)) + "…";
+  if (room < 24) return false;
+  let short = text;
+  for (let kept = Math.min(text.length, room >> 1); lengthOf(short) > room; --kept) {
+    if (kept < 4) return false;
+    short = text.slice(0, kept).trim() + "…";
+  }
+  const right = x + lengthOf(short);
+  if (lane.texts.some(other => x < other.right && other.x < right && Math.abs(y - other.y) < 13)) return false;
+  lane.texts.push({x, y, right});
   lane.svg.append(element("text", quiet ? {x, y, class: "quiet"} : {x, y}, short));
+  return true;
 }
 
 // A picture on lights, each of `size` pixels: the picture's width, in pixels; 0 if there is none.
@@ -114,7 +143,7 @@ function drawBars(lane) {
     if (end < from || begin > to) continue;
     const x = place(lane, begin);
     lane.svg.append(element("rect", {x, y: 2, width: Math.max(place(lane, end) - x, 2), height: lane.height - 4, class: "halt"}));
-    label(lane, Math.max(x, 0) + 4, lane.height / 2 + 4, place(lane, end) - Math.max(x, 0), "halted");
+    label(lane, Math.max(x, 0) + 4, lane.height / 2 + 4, place(lane, end) - Math.max(x, 0) - 6, "halted");
   }
   // What lasts when its command is done: a thin bar, up to the next command.
   const lasting = lane.of.bars.filter(bar => bar.until > bar.to).map(bar => ({...bar, from: bar.to, to: bar.until, bar}));
@@ -139,20 +168,45 @@ function drawSegments(lane) {
   });
 }
 
-// Of all values in one column of pixels, the least and the greatest.
+// The curve lies on top of all texts, and its lane has room for one above and below it.
 function drawCurve(lane) {
-  const {of: {points, thresholds}, low, high} = lane;
-  const y = value => lane.height - 6 - (value - low) / (high - low || 1) * (lane.height - 12);
-  const written = [];
-  for (const one of thresholds) {
-    if (one.value < low || one.value > high) continue;
-    const at = y(one.value), base = at > 16 ? at - 3 : at + 12;
-    lane.svg.append(element("line", {x1: 0, x2: lane.width, y1: at, y2: at, class: "threshold"}));
-    if (written.some(other => Math.abs(other - base) < 11)) continue;
-    written.push(base);
-    const value = shown(lane.of, one.value);
-    label(lane, 4, base, 300, one.rule === null ? `${one.text} from ${value}` : `${one.text} ${value}, ${ruleName(one.rule)}`, true);
+  const {of: {thresholds}, low, high} = lane;
+  const y = value => lane.height - 16 - (value - low) / (high - low || 1) * (lane.height - 32);
+  const d = curve(lane, y);
+  const within = thresholds.filter(one => low <= one.value && one.value <= high);
+  const lines = within.map(one => y(one.value));
+  for (const at of lines) lane.svg.append(element("line", {x1: 0, x2: lane.width, y1: at, y2: at, class: "threshold"}));
+  for (const [value, base] of [[high, 12], [low, lane.height - 3]]) {
+    const text = shown(lane.of, value);
+    label(lane, lane.width - lengthOf(text) - 2, base, lane.width, text, true);
   }
+  for (const one of within) labelThreshold(lane, one, y, lines);
+  if (d) lane.svg.append(element("path", {d, class: "curve"}));
+}
+
+// Above its line or below; further right, if other texts, lines or the curve are there.
+function labelThreshold(lane, one, y, lines) {
+  const value = shown(lane.of, one.value), at = y(one.value);
+  const text = one.rule === null ? `${one.text} from ${value}` : `${one.text} ${value}, ${ruleName(one.rule)}`;
+  const room = lane.width / 3;
+  for (const crossing of [false, true])
+    for (const x of [4, 4 + room, 4 + 2 * room])
+      for (const base of [at - 3, at + 12])
+        if (crossing || !lines.some(line => base - 11 < line && line < base + 2) && !crossed(lane, y, x, x + lengthOf(text), base))
+          if (label(lane, x, base, room - 16, text, true)) return;
+}
+
+// Whether the curve goes through a text that has this base and lies between these places.
+function crossed(lane, y, left, right, base) {
+  const points = lane.of.points;
+  const [first, end] = [left, right].map(x => firstFrom(points, point => point[0], timeAt(lane, x)));
+  const near = points.slice(Math.max(first - 1, 0), end).filter(point => point[1] !== null).map(point => y(point[1]));
+  return near.some(height => height > base - 11) && near.some(height => height < base + 2);
+}
+
+// Draws when the sensor is unknown. Returns the path of the readings: of all in one column of pixels, the least and the greatest.
+function curve(lane, y) {
+  const points = lane.of.points;
   let path = "", column = null, least = 0, most = 0, pen = false;
   const flush = () => { if (column !== null && least !== most) path += `V${y(least)}V${y(most)}`; };
   for (let i = Math.max(firstFrom(points, point => point[0], from) - 1, 0); i < points.length && points[i][0] <= to; ++i) {
@@ -163,7 +217,7 @@ function drawCurve(lane) {
       pen = false;
       const end = Math.min(place(lane, points[i + 1]?.[0] ?? END), lane.width);
       lane.svg.append(element("rect", {x, y: 0, width: Math.max(end - x, 1), height: lane.height, class: "unknown"}));
-      label(lane, x + 4, lane.height / 2 + 4, end - x, "unknown", true);
+      label(lane, x + 4, lane.height / 2 + 4, end - x - 6, "unknown", true);
       continue;
     }
     if (pen && Math.floor(x) === column) {
@@ -177,10 +231,7 @@ function drawCurve(lane) {
     [column, least, most, pen] = [Math.floor(x), value, value, true];
   }
   flush();
-  if (pen) path += `H${Math.min(place(lane, END), lane.width)}`;
-  if (path) lane.svg.append(element("path", {d: path, class: "curve"}));
-  label(lane, lane.width - 60, 12, 60, shown(lane.of, high), true);
-  label(lane, lane.width - 60, lane.height - 4, 60, shown(lane.of, low), true);
+  return pen ? path + `H${Math.min(place(lane, END), lane.width)}` : path;
 }
 
 function drawMarks(lane) {
@@ -214,13 +265,17 @@ function drawAxis(lane) {
   for (let at = Math.ceil(from / step) * step; at <= to; at += step) {
     const x = place(lane, at);
     lane.svg.append(element("line", {x1: x, x2: x, y1: 16, y2: lane.height, class: "grid"}));
-    lane.svg.append(element("text", {x: x + 3, y: 14}, (at / 1e6).toFixed(digits) + " s"));
+    const text = (at / 1e6).toFixed(digits) + " s";
+    label(lane, Math.min(x + 3, lane.width - lengthOf(text)), 14, lane.width, text);
   }
 }
 
-function draw() {
-  for (const lane of lanes) lane.width = lane.svg.clientWidth;  // all at once: asking lays the page out
+// `width`: of a lane; without it, what the window has.
+function draw(width) {
+  for (const lane of lanes) lane.width = width ?? lane.svg.clientWidth;  // all at once: asking lays the page out
   for (const lane of lanes) {
+    lane.texts = [];
+    lane.svg.setAttribute("viewBox", `0 0 ${lane.width} ${lane.height}`);  // paper may be narrower or wider
     lane.svg.replaceChildren();
     lane.draw(lane);
   }
@@ -268,7 +323,7 @@ function addSignal(signal) {
   const values = signal.points.map(point => point[1]).filter(value => value !== null);
   const near = signal.thresholds.map(one => one.value);
   const all = [...values, ...near];
-  const lane = addLane(signal.name, "", 64, signal, drawCurve);
+  const lane = addLane(signal.name, "", 72, signal, drawCurve);
   lane.low = all.reduce((a, b) => Math.min(a, b), all[0] ?? 0);
   lane.high = all.reduce((a, b) => Math.max(a, b), all[0] ?? 1000);
 }
@@ -304,6 +359,7 @@ function build() {
 }
 
 function buildLegend() {
+  document.body.append(hatchings());
   const seen = new Set(run.actuators.flatMap(lane => lane.bars.map(bar => bar.behavior)));
   for (const index of [...seen].sort((a, b) => a - b)) {
     const entry = document.createElement("li");
@@ -397,7 +453,9 @@ function listen() {
     if (drag && !drag.moved) choose(drag.item);
     drag = null;
   });
-  addEventListener("resize", draw);
+  addEventListener("resize", () => draw());
+  addEventListener("beforeprint", () => draw(PAPER));
+  addEventListener("afterprint", () => draw());
   const keys = {"+": () => zoom(0.8), "=": () => zoom(0.8), "-": () => zoom(1.25), "0": () => show(BEGIN, END),
     "ArrowLeft": () => show(from - (to - from) / 5, to - (to - from) / 5),
     "ArrowRight": () => show(from + (to - from) / 5, to + (to - from) / 5)};

@@ -1,0 +1,89 @@
+"""Headless Chromium, told what to do by the protocol of its developer tools, over pipes."""
+
+import base64
+import json
+import os
+import subprocess
+import tempfile
+
+
+class Browser:
+    """One tab. To use in a `with` statement."""
+
+    def __init__(self):
+        self.profile = tempfile.TemporaryDirectory()
+        self.last = 0
+
+    def __enter__(self):
+        to_browser, write = os.pipe()
+        read, from_browser = os.pipe()
+        command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                   f"--user-data-dir={self.profile.name}", "--remote-debugging-pipe", "about:blank"]
+        # It reads its orders from descriptor 3 and answers on 4.
+        placed = ["sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", *command]
+        self.process = subprocess.Popen(placed, pass_fds=(to_browser, from_browser),
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.orders, self.answers = os.fdopen(write, "wb"), os.fdopen(read, "rb")
+        self.session = None
+        (tab,) = [one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "page"]
+        self.session = self.call("Target.attachToTarget", targetId=tab["targetId"], flatten=True)["sessionId"]
+        self.call("Page.enable")
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        self.orders.close()
+        self.answers.close()
+        self.profile.cleanup()
+
+    def received(self):
+        message = bytearray()
+        while (byte := self.answers.read(1)) != b"\0":
+            if not byte:
+                raise RuntimeError("the browser has ended")
+            message += byte
+        return json.loads(message)
+
+    def call(self, method, **parameters):
+        self.last += 1
+        order = {"id": self.last, "method": method, "params": parameters}
+        if self.session:
+            order["sessionId"] = self.session
+        self.orders.write(json.dumps(order).encode() + b"\0")
+        self.orders.flush()
+        while (answer := self.received()).get("id") != self.last:
+            pass
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']['message']}")
+        return answer["result"]
+
+    def show(self, page, width=1300, height=1200):
+        """`page`: a file. Returns when it is loaded and its script has run."""
+        self.resize(width, height)
+        self.call("Page.navigate", url=page.as_uri())
+        while self.received().get("method") != "Page.loadEventFired":
+            pass
+
+    def resize(self, width, height=1200):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def evaluate(self, expression):
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"]["exception"]["description"])
+        return answer["result"].get("value")
+
+    def media(self, name):
+        """"print", or "screen"."""
+        self.call("Emulation.setEmulatedMedia", media=name)
+
+    def vision(self, kind):
+        """"protanopia", "achromatopsia", …, or "none"."""
+        self.call("Emulation.setEmulatedVisionDeficiency", type=kind)
+
+    def picture(self, place):
+        """What is to be seen in a rectangle, as PNG."""
+        return base64.b64decode(self.call("Page.captureScreenshot", clip={**place, "scale": 1})["data"])
