@@ -1,4 +1,6 @@
 // rsc run --html: what stands in the page for a run; how a browser shows it is tests/timeline's part.
+#include <regex>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -230,8 +232,10 @@ TEST_CASE("the page is whole by itself, and what a program says stays text in it
   CHECK(page.text.size() - page.run_of.dump().size() < 300'000);
   CHECK(page.run_of.at("messages").at(0).at("text") == "log: </script><b>strong</b>");
   CHECK(page.text.find("<b>strong") == std::string::npos);
-  for (const char* const outside : {"src=", "href=", "@import", "url(", "fetch("})
+  for (const char* const outside : {"src=", "href=", "@import", "fetch("})
     CHECK(page.text.find(outside) == std::string::npos);
+  CHECK_FALSE(
+      std::regex_search(page.text, std::regex(R"(url\((?!#))")));  // "#": in the page itself
 }
 
 TEST_CASE("the same run gives the same page; it is not written over the program") {
