@@ -7,20 +7,20 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from packed import package
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
 class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        said = subprocess.run([ROOT / "scripts/package"], check=True, text=True, stdout=subprocess.PIPE).stdout
-        cls.package = said.split()[-1]
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.root = Path(folder.name) / "root"
         cls.folder = Path(folder.name) / "empty"
         cls.folder.mkdir()
-        subprocess.run(["dpkg-deb", "-x", cls.package, cls.root], check=True)
+        subprocess.run(["dpkg-deb", "-x", package(), cls.root], check=True)
 
     def run_it(self, *command):
         path = f"{self.root}/usr/bin:{os.environ['PATH']}"
@@ -30,7 +30,7 @@ class Package(unittest.TestCase):
         return done.stdout
 
     def test_apt_finds_all_that_it_depends_on(self):
-        self.assertIn("Inst robosync", self.run_it("apt-get", "install", "--simulate", self.package))
+        self.assertIn("Inst robosync", self.run_it("apt-get", "install", "--simulate", package()))
 
     def test_a_new_robot_runs_without_the_sources(self):
         self.run_it("rsc", "new", "mine")
