@@ -13,6 +13,7 @@ class Browser:
     def __init__(self):
         self.profile = tempfile.TemporaryDirectory()
         self.last = 0
+        self.events = []  # the names of those since the last page
 
     def __enter__(self):
         to_browser, write = os.pipe()
@@ -55,7 +56,7 @@ class Browser:
         self.orders.write(json.dumps(order).encode() + b"\0")
         self.orders.flush()
         while (answer := self.received()).get("id") != self.last:
-            pass
+            self.events.append(answer.get("method"))
         if "error" in answer:
             raise RuntimeError(f"{method}: {answer['error']['message']}")
         return answer["result"]
@@ -63,9 +64,10 @@ class Browser:
     def show(self, page, width=1300, height=1200):
         """`page`: a file. Returns when it is loaded and its script has run."""
         self.resize(width, height)
+        self.events.clear()
         self.call("Page.navigate", url=page.as_uri())
-        while self.received().get("method") != "Page.loadEventFired":
-            pass
+        while "Page.loadEventFired" not in self.events:
+            self.events.append(self.received().get("method"))
 
     def resize(self, width, height=1200):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
