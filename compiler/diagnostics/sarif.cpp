@@ -87,11 +87,26 @@ Json rules() {
   return all;
 }
 
+// Of rsc, where it could not do all of its work.
+Json invocation(const std::vector<std::string>& notifications) {
+  Json all = Json::array();
+  for (const std::string& notification : notifications)
+    all.push_back(read_json(notification));
+  return {{"executionSuccessful", false}, {"toolExecutionNotifications", all}};
+}
+
 }  // namespace
 
 void SarifLog::add(const Diagnostics& diagnostics, const SourceMap& sources) {
   for (const Diagnostic& diagnostic : diagnostics.all())
     results_.push_back(json_text(result_of(diagnostic, sources)));
+}
+
+void SarifLog::add_unchecked(std::string_view path, std::string_view why) {
+  const Json place = {{"physicalLocation", {{"artifactLocation", {{"uri", uri_of(path)}}}}}};
+  unchecked_.push_back(json_text(Json{{"level", "error"},
+                                      {"message", {{"text", std::string(why)}}},
+                                      {"locations", Json::array({place})}}));
 }
 
 std::string SarifLog::text() const {
@@ -100,6 +115,7 @@ std::string SarifLog::text() const {
               {"results", Json::array()}};
   for (const std::string& result : results_)
     run["results"].push_back(read_json(result));
+  if (!unchecked_.empty()) run["invocations"] = Json::array({invocation(unchecked_)});
   const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
                     {"version", "2.1.0"},
                     {"runs", Json::array({run})}};

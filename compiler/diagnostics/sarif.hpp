@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diagnostics/diagnostic.hpp"
@@ -15,12 +16,15 @@ public:
   explicit SarifLog(std::string version) : version_(std::move(version)) {}
 
   void add(const Diagnostics& diagnostics, const SourceMap& sources);
+  // A program that could not be checked, for example because it cannot be read.
+  void add_unchecked(std::string_view path, std::string_view why);
   // The log as one JSON object, with a newline.
   [[nodiscard]] std::string text() const;
 
 private:
   std::string version_;               // of rsc
-  std::vector<std::string> results_;  // each a JSON object
+  std::vector<std::string> results_;  // each a JSON object, as are these:
+  std::vector<std::string> unchecked_;
 };
 
 }  // namespace robosync::compiler

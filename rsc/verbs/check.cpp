@@ -99,8 +99,9 @@ public:
 
   // A file that cannot be read must not look like one without errors.
   void note_failure(const std::string& file, const Failure& failure) {
-    if (*failure.what() != '\0')
-      report_["not_checked"].push_back({{"file", file}, {"why", failure.what()}});
+    if (*failure.what() == '\0') return;
+    report_["not_checked"].push_back({{"file", file}, {"why", failure.what()}});
+    log_.add_unchecked(file, failure.what());
   }
 
   // After all files have been checked.

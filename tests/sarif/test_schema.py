@@ -102,7 +102,13 @@ class Schema(unittest.TestCase):
 
     def test_nothing_found_and_nothing_read(self):
         self.assertEqual(self.results(self.accepted(self.write("right.rsl", RIGHT))), [])
-        self.assertEqual(self.results(self.accepted("not_there.rsl")), [])
+        unread = self.accepted("not_there.rsl", "right.rsl")
+        self.assertEqual(self.results(unread), [])
+        (call,) = unread["runs"][0]["invocations"]
+        (notification,) = call["toolExecutionNotifications"]
+        self.assertFalse(call["executionSuccessful"])
+        self.assertIn("not_there.rsl", notification["message"]["text"])
+        self.assertEqual(notification["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "not_there.rsl")
 
     def test_strange_names_and_texts(self):
         for name in STRANGE_NAMES:
