@@ -221,6 +221,7 @@ Device read_device(const DeviceText& text, Diagnostics& diagnostics) {
   constexpr std::array<std::string_view, 2> kKinds = {"actuator", "sensor"};
   device.is_sensor = read_choice(*kind, kKinds, diagnostics).value_or(0) == 1;
   device.type = type->text;
+  if (const auto* doc = fields.find("doc")) device.doc = doc->text;
   if (const auto* is_default = fields.find("default")) device.is_default = is_default->truth;
   auto driver = device.is_sensor ? vm::DriverId::virtual_sensor : vm::DriverId::virtual_actuator;
   if (const auto* named = fields.find("driver")) {

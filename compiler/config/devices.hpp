@@ -14,6 +14,7 @@ inline constexpr unsigned kRegisters = 256;
 
 struct Device {
   std::string name;
+  std::string doc;
   bool is_sensor = false;
   std::string type;         // how it is wired: "I2C"
   bool has_driver = false;  // false: this version has none; values go over the link

@@ -101,8 +101,7 @@ TEST_CASE("every descriptor is read without a word") {
     CHECK(text.is_default == device.is_default);
     CHECK(find_device(text.name, text.is_sensor) != nullptr);
     CHECK(find_device(text.name, !text.is_sensor) == nullptr);
-    CHECK(text.json ==
-          read_file(source_folder() / "stdlib/devices" / (std::string(text.name) + ".json")));
+    CHECK(!device.doc.empty());
     if (device.is_sensor)
       CHECK(!device.sensor.channels.empty());
     else
@@ -298,6 +297,17 @@ TEST_CASE("the formats of a register on SPI are those of the schema, and reach t
   }
 }
 
+TEST_CASE("what is built in of devices and boards is what their files say") {
+  const auto in = [](const char* folder, std::string_view name) {
+    const auto path = source_folder() / "stdlib" / folder / (std::string(name) + ".json");
+    return nlohmann::ordered_json::parse(read_file(path));
+  };
+  for (const DeviceText& text : device_texts())
+    CHECK(nlohmann::ordered_json::parse(text.json) == in("devices", text.name));
+  for (const BoardText& text : board_texts())
+    CHECK(nlohmann::ordered_json::parse(text.json) == in("boards", text.name));
+}
+
 TEST_CASE("the schema bounds a robot's name as the image does") {
   CHECK(schema().at("properties").at("name").at("maxLength") == vm::kMaxRobotName);
 }
@@ -351,10 +361,11 @@ TEST_CASE("the schema lists the boards, types, devices, modules and units that t
   for (const std::string_view color : panel_colors())
     colors.push_back(color);
   Json& modules = list(definitions.at("algorithm"), "module");
-  for (const AlgorithmModule& module : tool::algorithm_modules().firmware)
-    modules.push_back(module.name);
-  for (const AlgorithmModule& module : tool::algorithm_modules().companion)
-    modules.push_back(module.name);
+  for (const auto& where :
+       {tool::algorithm_modules().firmware, tool::algorithm_modules().companion})
+    for (const AlgorithmModule& module : where)
+      if (std::find(modules.begin(), modules.end(), module.name) == modules.end())
+        modules.push_back(module.name);
   Json& unit_names = list(definitions.at("channel"), "unit");
   for (const Unit& unit : units())
     unit_names.push_back(unit.spelling);
