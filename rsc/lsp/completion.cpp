@@ -50,15 +50,17 @@ Json item_json(const query::Candidate& candidate, const Json& range, char quote,
                const Client& client) {
   std::string text = candidate.text;
   if (candidate.is_text) text = quote + text + quote;
-  Json item = {{"label", candidate.text},
-               {"kind", item_kind(candidate)},
-               {"sortText", (candidate.kind ? "0" : "1") + candidate.text},
-               {"filterText", text},
-               {"textEdit", {{"range", range}, {"newText", text}}}};
+  Json item;
+  item["label"] = candidate.text;
+  item["kind"] = item_kind(candidate);
+  item["sortText"] = (candidate.kind ? "0" : "1") + candidate.text;
+  item["filterText"] = text;
+  item["textEdit"]["range"] = range;
+  item["textEdit"]["newText"] = text;
   if (!candidate.detail.empty()) item["detail"] = candidate.detail;
-  if (!candidate.text_about.empty())
-    item["documentation"] = {{"kind", client.markdown ? "markdown" : "plaintext"},
-                             {"value", candidate.text_about}};
+  if (candidate.text_about.empty()) return item;
+  item["documentation"]["kind"] = client.markdown ? "markdown" : "plaintext";
+  item["documentation"]["value"] = candidate.text_about;
   return item;
 }
 
@@ -92,7 +94,10 @@ Json completion(Desk desk, const Json& params) {
   Json items = Json::array();
   for (const query::Candidate& candidate : found.candidates)
     items.push_back(item_json(candidate, range, quote, desk.client));
-  return {{"isIncomplete", false}, {"items", std::move(items)}};
+  Json result;
+  result["isIncomplete"] = false;
+  result["items"] = std::move(items);
+  return result;
 }
 
 }  // namespace robosync::tool::lsp

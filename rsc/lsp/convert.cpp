@@ -17,14 +17,20 @@ Place place_in(const Json& position) {
   return {position.at("line").get<std::uint32_t>(), position.at("character").get<std::uint32_t>()};
 }
 
+// Key by key: a list of keys and values would make several times the code.
 Json position_json(Place place) {
-  return {{"line", place.line}, {"character", place.character}};
+  Json position;
+  position["line"] = place.line;
+  position["character"] = place.character;
+  return position;
 }
 
 Json range_json(const SourceFile& source, std::uint32_t begin, std::uint32_t end,
                 Encoding encoding) {
-  return {{"start", position_json(place_of(source, begin, encoding))},
-          {"end", position_json(place_of(source, std::max(begin, end), encoding))}};
+  Json range;
+  range["start"] = position_json(place_of(source, begin, encoding));
+  range["end"] = position_json(place_of(source, std::max(begin, end), encoding));
+  return range;
 }
 
 Json range_json(const SourceMap& sources, Span span, Encoding encoding) {
@@ -51,7 +57,10 @@ std::optional<std::string> address_of(const std::string& name, const Workspace& 
 Json location_json(const SourceMap& sources, Span span, const Workspace& workspace) {
   const auto uri = address_of(sources.file(span.file).name(), workspace);
   if (!uri) return nullptr;
-  return {{"uri", *uri}, {"range", range_json(sources, span, workspace.encoding())}};
+  Json location;
+  location["uri"] = *uri;
+  location["range"] = range_json(sources, span, workspace.encoding());
+  return location;
 }
 
 // ---- diagnostics
