@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "compiler/config/fields.hpp"
 #include "compiler/config/json_reader.hpp"
 #include "compiler/config/names.hpp"
@@ -120,6 +122,17 @@ Board::Flash read_flash(const json::Value& value, Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+std::string Board::Pins::text() const {
+  return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
+}
+
+std::string list_pins(std::span<const Board::Pins> pins) {
+  std::vector<std::string> rows;
+  for (const Board::Pins& row : pins)
+    rows.push_back(row.text());
+  return list_names(rows);
+}
 
 bool Board::has_output(std::uint16_t pin) const {
   return is_in(outputs, pin);

@@ -31,6 +31,8 @@ struct Board {
     std::uint16_t first, last;
     bool power = true;         // of outputs: false if they give pulses for servos only
     vm::ServoPulses pulses{};  // of outputs: the limits for a servo
+
+    [[nodiscard]] std::string text() const;  // "4", "0 to 2"
   };
   std::vector<Pins> outputs;  // pins that a program may drive
   std::vector<Pins> inputs;   // … and read; one may be both, but not in one program
@@ -87,6 +89,9 @@ struct Board {
   [[nodiscard]] const Reserved* find_reserved(std::uint8_t bus, std::uint16_t address) const;
   [[nodiscard]] const Part* find_part(std::string_view wanted) const;  // any case
 };
+
+// "`0 to 2` and `12`"
+[[nodiscard]] std::string list_pins(std::span<const Board::Pins> pins);
 
 // Reads one profile and reports its mistakes. A test checks that the built-in profiles have none.
 [[nodiscard]] Board read_board(const BoardText& text, Diagnostics& diagnostics);

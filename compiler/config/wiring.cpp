@@ -83,11 +83,6 @@ constexpr SpecialPins kSelect = {
     "pin for the select input of a part", "for the select input of a part",
     "pins that are: ", kEnable.boards, [](const Board& board) { return !board.selects.empty(); }};
 
-std::string text_of(const Board::Pins& pins) {
-  return pins.first == pins.last ? std::to_string(pins.first)
-                                 : std::to_string(pins.first) + " to " + std::to_string(pins.last);
-}
-
 }  // namespace
 
 std::span<const WiringType> wiring_types() {
@@ -203,7 +198,7 @@ void WiringReader::take_pin(std::uint16_t pin, Span span) {
           .label(span)
           .label(first->second, "first used here", false);
   if (const Board::Pins& bus = board_.spi_pins; on_spi_ && pin >= bus.first && pin <= bus.last)
-    report.helps("the SPI bus of this board has the pins " + text_of(bus));
+    report.helps("the SPI bus of this board has the pins " + bus.text());
 }
 
 // The default is a contact to GND on a pin with a pull-up, the most common wiring.
@@ -642,13 +637,10 @@ void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
   Diagnostics said;
   if (board_.named == Board::Named::wrongly || read_whole(value, 0, UINT16_MAX, said) != pin)
     return;
-  std::vector<std::string> pins;
-  for (const Board::Pins& range : those)
-    pins.push_back(text_of(range));
   diagnostics_
       .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(pin) + is_no)
       .label(value.span)
-      .helps(those_are + list_names(pins, "and"));
+      .helps(those_are + list_pins(those));
 }
 
 std::optional<std::size_t> read_choice(const json::Value& value,

@@ -35,7 +35,37 @@ const json::Value* input_of(const Fields& fields) {
   return nullptr;
 }
 
+// The keys that a device needs instead of those of its type.
+std::string_view own_keys(vm::DriverId driver) {
+  if (vm::is_by_echo(driver)) return "`trigger` and `echo`";
+  if (vm::counts_edges(driver)) return "`pin`, `pulses_per_turn` and `wheel`";
+  if (vm::drives_channel(driver)) return "`bus`, `address`, `channel` and `enable`";
+  if (vm::drives_wheels(driver)) return "`left`, `right`, `speed` and `track`";
+  if (vm::has_two_pins(driver)) return "`pins`";
+  return vm::is_strip(driver) ? "`pin` and `lights`" : "";
+}
+
+std::string_view keys_of(const WiringType& type) {
+  if (!type.bus) return "`pin`";
+  if (type.address) return "`bus` and `address`";
+  return type.pin ? "`bus` and `pin`" : "`bus`";
+}
+
+bool is_part(vm::DriverId driver) {
+  return vm::is_of_board(driver) || vm::drives_lights(driver) || vm::drives_speaker(driver);
+}
+
 }  // namespace
+
+std::string wiring_of(const Device& device) {
+  const vm::DriverId driver = device.is_sensor ? device.sensor.driver : device.actuator.driver;
+  if (!device.has_driver || is_part(driver)) return {};
+  std::string text(own_keys(driver));
+  if (text.empty())
+    text = keys_of(*std::ranges::find(wiring_types(), device.type, &WiringType::name));
+  if (!device.addresses.empty()) text += ", " + list_names(listed(device), "or");
+  return text;
+}
 
 // What has this address on the board, in words; empty: nothing, or the same chip, or it has been reported.
 std::string WiringReader::owner_on_board(const Fields& fields, const Wiring& wiring,

@@ -40,29 +40,6 @@ std::string range_of(const ChannelConfig& channel) {
                      format_value(channel.max, *channel.unit));
 }
 
-std::string rate_of(const ChannelConfig& channel) {
-  if (channel.period_ms == 0) return "It has a value when it is fed one.";
-  return fmt::format("It is read every {} ms.", channel.period_ms);
-}
-
-std::string about(const ActuatorConfig& actuator) {
-  std::vector<std::string> verbs;
-  for (const VerbConfig& verb : actuator.verbs)
-    verbs.push_back(spoken(verb.name));
-  std::string text = fmt::format("Device: {}.", actuator.device);
-  if (!verbs.empty()) text += fmt::format("\nVerbs: {}.", explain::list(verbs));
-  if (actuator.to_unit != nullptr)
-    text += fmt::format("\nRange: from {} to {}.", format_value(actuator.min, *actuator.to_unit),
-                        format_value(actuator.max, *actuator.to_unit));
-  if (actuator.speed_limit != vm::kValueMax && actuator.at_unit != nullptr)
-    text += fmt::format("\nNever faster than {}.",
-                        format_value(actuator.speed_limit, *actuator.at_unit));
-  if (actuator.acceleration != 0)
-    text += fmt::format("\nSpeeds up and slows down by no more than {}.",
-                        format_acceleration(actuator.acceleration, *actuator.at_unit));
-  return text;
-}
-
 std::string about_robot(const Symbol& symbol, const Robot& robot) {
   switch (symbol.kind) {
     case SymbolKind::sensor: {
@@ -73,11 +50,11 @@ std::string about_robot(const Symbol& symbol, const Robot& robot) {
     case SymbolKind::channel: {
       const SensorConfig& sensor = robot.sensors.at(symbol.owner);
       const ChannelConfig& channel = sensor.channels.at(symbol.place);
-      return fmt::format("Its value is {}. {}\nDevice: {}.", range_of(channel), rate_of(channel),
-                         sensor.device);
+      return fmt::format("Its value is {}\nDevice: {}.", describe_channel(channel), sensor.device);
     }
     case SymbolKind::actuator:
-      return about(robot.actuators.at(symbol.owner));
+      return fmt::format("Device: {}.{}", robot.actuators.at(symbol.owner).device,
+                         describe_actuator(robot.actuators.at(symbol.owner)));
     case SymbolKind::group: {
       std::vector<std::string> members;
       for (const std::size_t member : robot.groups.at(symbol.owner).members)
@@ -126,6 +103,30 @@ std::string line_of(const Symbol& symbol, const Project& project) {
 }
 
 }  // namespace
+
+std::string describe_channel(const ChannelConfig& channel) {
+  const std::string range = range_of(channel);
+  if (channel.period_ms == 0) return range + ". It has a value when it is fed one.";
+  return fmt::format("{}. It is read every {} ms.", range, channel.period_ms);
+}
+
+std::string describe_actuator(const ActuatorConfig& actuator) {
+  std::vector<std::string> verbs;
+  for (const VerbConfig& verb : actuator.verbs)
+    verbs.push_back(spoken(verb.name));
+  std::string text;
+  if (!verbs.empty()) text += fmt::format("\nVerbs: {}.", explain::list(verbs));
+  if (actuator.to_unit != nullptr)
+    text += fmt::format("\nRange: from {} to {}.", format_value(actuator.min, *actuator.to_unit),
+                        format_value(actuator.max, *actuator.to_unit));
+  if (actuator.speed_limit != vm::kValueMax && actuator.at_unit != nullptr)
+    text += fmt::format("\nNever faster than {}.",
+                        format_value(actuator.speed_limit, *actuator.at_unit));
+  if (actuator.acceleration != 0)
+    text += fmt::format("\nSpeeds up and slows down by no more than {}.",
+                        format_acceleration(actuator.acceleration, *actuator.at_unit));
+  return text;
+}
 
 std::string describe_verb(const ActuatorConfig& actuator, const VerbConfig& verb) {
   constexpr std::array<std::string_view, static_cast<std::size_t>(vm::Param::count_)> kNames = {

@@ -19,6 +19,11 @@ struct Description {
 [[nodiscard]] std::string describe_verb(const ActuatorConfig& actuator, const VerbConfig& verb);
 [[nodiscard]] std::string describe_word(const ActuatorConfig& actuator, const WordConfig& word);
 
+// "from 2cm to 400cm. It is read every 60 ms."
+[[nodiscard]] std::string describe_channel(const ChannelConfig& channel);
+// Its verbs and its limits: a line each, which begins with its end of line.
+[[nodiscard]] std::string describe_actuator(const ActuatorConfig& actuator);
+
 // The comment directly above the line of `offset`, without its comment signs.
 [[nodiscard]] std::string comment_above(const SourceFile& source, std::uint32_t offset);
 

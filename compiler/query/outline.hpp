@@ -1,4 +1,4 @@
-// The items of a program, as a list for navigation.
+// The items of a program or of a robot.json, as a list for navigation.
 #pragma once
 
 #include <string>
@@ -8,7 +8,18 @@
 
 namespace robosync::compiler::query {
 
-enum class OutlineKind : std::uint8_t { constant, variable, block, define, behavior, rule, test };
+enum class OutlineKind : std::uint8_t {
+  constant,
+  variable,
+  block,
+  define,
+  behavior,
+  rule,
+  test,
+  part,     // of a robot.json: a sensor or an actuator
+  channel,  // … of a sensor
+  list      // … a group, a picture
+};
 
 struct OutlineItem {
   std::string name;

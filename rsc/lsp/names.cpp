@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/query/configuration.hpp"
 #include "compiler/query/describe.hpp"
 #include "compiler/query/rename.hpp"
 #include "rsc/lsp/answers.hpp"
@@ -13,7 +14,7 @@
 namespace robosync::tool::lsp {
 
 namespace query = compiler::query;
-using compiler::SourceMap;
+using compiler::SourceFile, compiler::SourceMap;
 
 namespace {
 
@@ -72,11 +73,34 @@ std::string plain(const query::Description& about, const std::string& name) {
   return text;
 }
 
+// "Used at `robot.rsl:3` and `robot.rsl:7`.": where the programs say a name of robot.json.
+std::string uses_of(const std::vector<Meant>& everywhere) {
+  std::vector<std::string> uses;
+  for (const Meant& meant : everywhere)
+    for (const query::Occurrence& one : meant.asked.checked->symbols().of(meant.name->symbol)) {
+      const SourceFile& source = sources_of(meant.asked).file(one.span.file);
+      std::string use =
+          fmt::format("{}:{}", std::string_view(source.name()).substr(source.name().rfind('/') + 1),
+                      source.line_of(one.span.begin));
+      const bool is_new = std::ranges::find(uses, use) == uses.end();
+      if (one.span.file != compiler::kConfigurationFile && is_new) uses.push_back(std::move(use));
+    }
+  return uses.empty() ? "" : fmt::format("\nUsed at {}.", compiler::list_names(uses));
+}
+
 Json hover_json(const std::string& value, bool is_markdown, const Json& range) {
-  Json result = {
-      {"contents", {{"kind", is_markdown ? "markdown" : "plaintext"}, {"value", value}}}};
+  Json result;
+  result["contents"]["kind"] = is_markdown ? "markdown" : "plaintext";
+  result["contents"]["value"] = value;
   if (!range.is_null()) result["range"] = range;
   return result;
+}
+
+Json hover_json(Desk desk, const query::Described& what, const Asked& asked) {
+  const bool is_markdown = desk.client.markdown;
+  return hover_json(is_markdown ? markdown(what.about, what.name) : plain(what.about, what.name),
+                    is_markdown,
+                    range_json(sources_of(asked), what.span, desk.workspace.encoding()));
 }
 
 }  // namespace
@@ -85,14 +109,17 @@ Json hover(Desk desk, const Json& params) {
   const auto asked = asked_at(desk, params);
   if (!asked) return nullptr;
   const query::Project project = asked->checked->project();
+  const bool in_robot = asked->file == compiler::kConfigurationFile;
   if (const auto meant = meant_by(*asked)) {
-    const query::Description about = query::describe(*meant->symbol, project);
-    const std::string& name = meant->symbol->name;
-    return hover_json(desk.client.markdown ? markdown(about, name) : plain(about, name),
-                      desk.client.markdown,
-                      range_json(sources_of(*asked), meant->name->span, desk.workspace.encoding()));
+    query::Description about = query::describe(*meant->symbol, project);
+    if (in_robot) about.text += uses_of(meant_everywhere(desk, params));
+    return hover_json(desk, {meant->symbol->name, meant->name->span, std::move(about)}, *asked);
   }
-  if (asked->file == compiler::kConfigurationFile) return nullptr;
+  if (in_robot) {
+    const auto found = query::describe_configuration(sources_of(*asked).file(asked->file),
+                                                     asked->file, asked->offset, project.robot);
+    return found.name.empty() ? nullptr : hover_json(desk, found, *asked);
+  }
   std::string rule = query::rule_in_english(project, asked->file, asked->offset);
   if (rule.empty()) return nullptr;
   const compiler::Result& result = asked->checked->result();

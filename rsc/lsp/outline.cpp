@@ -1,10 +1,12 @@
-// textDocument/documentSymbol: the outline of a program.
+// textDocument/documentSymbol: the outline of a program or of a robot.json.
 #include "compiler/query/outline.hpp"
 
 #include <utility>
 
+#include "compiler/query/configuration.hpp"
 #include "compiler/syntax/parser.hpp"
 #include "rsc/lsp/answers.hpp"
+#include "rsc/lsp/uris.hpp"
 
 namespace robosync::tool::lsp {
 
@@ -15,8 +17,8 @@ namespace {
 
 // SymbolKind of the protocol.
 int symbol_kind(query::OutlineKind kind) {
-  constexpr int kNamespace = 3, kClass = 5, kMethod = 6, kFunction = 12, kVariable = 13,
-                kConstant = 14, kEvent = 24;
+  constexpr int kNamespace = 3, kClass = 5, kMethod = 6, kField = 8, kFunction = 12, kVariable = 13,
+                kConstant = 14, kArray = 18, kObject = 19, kEvent = 24;
   switch (kind) {
     case query::OutlineKind::constant:
       return kConstant;
@@ -30,32 +32,62 @@ int symbol_kind(query::OutlineKind kind) {
       return kClass;
     case query::OutlineKind::rule:
       return kEvent;
+    case query::OutlineKind::part:
+      return kObject;
+    case query::OutlineKind::channel:
+      return kField;
+    case query::OutlineKind::list:
+      return kArray;
     case query::OutlineKind::test:
       break;
   }
   return kMethod;
 }
 
-Json symbol_json(const query::OutlineItem& item, const SourceMap& sources, Encoding encoding) {
-  Json inside = Json::array();
-  for (const query::OutlineItem& one : item.inside)
-    inside.push_back(symbol_json(one, sources, encoding));
-  return {{"name", item.name},
-          {"kind", symbol_kind(item.kind)},
-          {"range", range_json(sources, item.span, encoding)},
-          {"selectionRange", range_json(sources, item.name_span, encoding)},
-          {"children", std::move(inside)}};
-}
+// Adds items to a list.
+class Symbols {
+public:
+  Symbols(Desk desk, std::string uri, const SourceMap& sources)
+      : desk_(desk), uri_(std::move(uri)), sources_(sources) {}
 
-void add_flat(const query::OutlineItem& item, const std::string& uri, const std::string& inside_of,
-              const SourceMap& sources, Encoding encoding, Json& result) {
-  result.push_back(
-      {{"name", item.name},
-       {"kind", symbol_kind(item.kind)},
-       {"location", {{"uri", uri}, {"range", range_json(sources, item.span, encoding)}}},
-       {"containerName", inside_of}});
-  for (const query::OutlineItem& one : item.inside)
-    add_flat(one, uri, item.name, sources, encoding, result);
+  void add(const query::OutlineItem& item, const std::string& outside, Json& list) const {
+    Json symbol;
+    symbol["name"] = item.name;
+    symbol["kind"] = symbol_kind(item.kind);
+    if (desk_.client.nested_symbols) {
+      symbol["range"] = range(item.span);
+      symbol["selectionRange"] = range(item.name_span);
+      add_all(item.inside, "", symbol["children"] = Json::array());
+      list.push_back(std::move(symbol));
+    } else {
+      symbol["location"]["uri"] = uri_;
+      symbol["location"]["range"] = range(item.span);
+      symbol["containerName"] = outside;
+      list.push_back(std::move(symbol));
+      add_all(item.inside, item.name, list);
+    }
+  }
+  void add_all(const std::vector<query::OutlineItem>& items, const std::string& outside,
+               Json& list) const {
+    for (const query::OutlineItem& item : items)
+      add(item, outside, list);
+  }
+
+private:
+  [[nodiscard]] Json range(compiler::Span span) const {
+    return range_json(sources_, span, desk_.workspace.encoding());
+  }
+
+  Desk desk_;
+  std::string uri_;
+  const SourceMap& sources_;
+};
+
+std::vector<query::OutlineItem> items_of(const SourceMap& sources, compiler::FileId file,
+                                         bool is_json) {
+  if (is_json) return query::outline_configuration(sources.file(file), file);
+  compiler::Diagnostics ignored;
+  return query::outline(compiler::parse(sources, file, ignored), sources);
 }
 
 }  // namespace
@@ -63,18 +95,15 @@ void add_flat(const query::OutlineItem& item, const std::string& uri, const std:
 Json document_symbols(Desk desk, const Json& params) {
   const std::string uri = address_in(params);
   const Document* const document = desk.workspace.find(uri);
-  if (document == nullptr || name_of(uri).ends_with(".json")) return nullptr;
+  const auto path = path_of(uri);
+  const bool is_json = name_of(uri).ends_with(".json");
+  // Not every JSON that is open describes a robot.
+  if (document == nullptr || (is_json && (!path || desk.workspace.users_of(*path).empty())))
+    return nullptr;
   SourceMap sources;
-  compiler::Diagnostics ignored;
   const compiler::FileId file = sources.add("", std::string(document->source.text()));
-  const compiler::ast::Tree tree = compiler::parse(sources, file, ignored);
   Json result = Json::array();
-  for (const query::OutlineItem& item : query::outline(tree, sources)) {
-    if (desk.client.nested_symbols)
-      result.push_back(symbol_json(item, sources, desk.workspace.encoding()));
-    else
-      add_flat(item, uri, "", sources, desk.workspace.encoding(), result);
-  }
+  Symbols(desk, uri, sources).add_all(items_of(sources, file, is_json), "", result);
   return result;
 }
 

@@ -39,10 +39,10 @@ class Session {
     });
     this.line.listen();
   }
-  async begin() {
+  async begin(textDocument = {}) {
     const started = await this.line.sendRequest(lsp.InitializeRequest.type, {
       processId: process.pid, rootUri: null, workspaceFolders: null,
-      capabilities: { general: { positionEncodings: ["utf-16"] } } });
+      capabilities: { general: { positionEncodings: ["utf-16"] }, textDocument } });
     await this.line.sendNotification(lsp.InitializedNotification.type, {});
     return started;
   }
@@ -60,6 +60,16 @@ class Session {
       if (said) return said.diagnostics;
       await new Promise((look) => this.waiting.push(look));
     }
+  }
+  async openRobot(text) {
+    this.robot = pathToFileURL(path.join(this.folder, "robot.json")).toString();
+    await this.line.sendNotification(lsp.DidOpenTextDocumentNotification.type, {
+      textDocument: { uri: this.robot, languageId: "json", version: 1, text } });
+  }
+  // About the place of a word in a robot.json of one line.
+  askRobot(type, text, word) {
+    return this.line.sendRequest(type, {
+      textDocument: { uri: this.robot }, position: { line: 0, character: text.indexOf(word) } });
   }
   ask(type, line, character, more = {}) {
     return this.line.sendRequest(type, { textDocument: { uri: this.uri }, position: { line, character }, ...more });
@@ -100,6 +110,32 @@ check("a session: diagnostics, completion, hover, definition, rename, formatting
   assert.ok(Array.isArray(edits));
   const symbols = await session.line.sendRequest(lsp.DocumentSymbolRequest.type, { textDocument: { uri: session.uri } });
   assert.equal(symbols[0].name, "WHEN touch LEVEL > 3 DO LOG \"🤖\", touch LEVEL");
+  await session.end();
+});
+
+check("robot.json: completion, hover and outline, while it is no JSON yet", async () => {
+  const session = new Session();
+  await session.begin({ documentSymbol: { hierarchicalDocumentSymbolSupport: true } });
+  await session.open(RIGHT);
+  const text = '{"name": "🤖", "sensors": [{"name": "touch", "device": "hc-sr04", "trig';
+  await session.openRobot(text);
+  const ranged = (word, size) => ({ start: { line: 0, character: text.indexOf(word) },
+                                    end: { line: 0, character: text.indexOf(word) + size } });
+  const device = await session.askRobot(lsp.HoverRequest.type, text, "hc-sr04");
+  assert.match(device.contents.value, /an ultrasonic distance sensor[^]*`trigger` and `echo`[^]*from 2cm to 400cm/);
+  assert.deepEqual(device.range, ranged('"hc-sr04"', 9));
+  const key = await session.askRobot(lsp.HoverRequest.type, text, '"device"');
+  assert.match(key.contents.value, /a key of `sensor`/);
+  const offered = await session.line.sendRequest(lsp.CompletionRequest.type, {
+    textDocument: { uri: session.robot }, position: { line: 0, character: text.length } });
+  assert.deepEqual(offered.items.find((item) => item.label === "trigger").textEdit.range, ranged('"trig', 5));
+  const [section] = await session.line.sendRequest(lsp.DocumentSymbolRequest.type, { textDocument: { uri: session.robot } });
+  assert.equal(section.name, "sensors");
+  const [touch] = section.children;
+  assert.equal(touch.kind, lsp.SymbolKind.Object);
+  assert.deepEqual(touch.selectionRange, ranged("touch", 5));
+  assert.deepEqual(touch.range.start, ranged('{"name": "touch"', 0).start);
+  assert.equal(touch.range.end.character, text.length);
   await session.end();
 });
 

@@ -46,6 +46,21 @@ class Session(unittest.TestCase):
         self.assertEqual(offset_of(ROBOT, place["range"]["start"]), ROBOT.index("arms"))
         self.assertEqual(server.end(), 0)
 
+    def test_robot_json_while_it_is_no_json(self):
+        server = self.server(capabilities={"textDocument": {"documentSymbol": {"hierarchicalDocumentSymbolSupport": True}}})
+        robot = self.program.with_name("robot.json")
+        text = '{"name": "\U0001F916", "sensors": [{"name": "eye", "device": "hc-sr04", "trig'
+        server.open(robot, text)
+        at = text.index('"hc-sr04"')
+        said = server.at("hover", robot, position(text, at))
+        self.assertIn("an ultrasonic distance sensor", said["contents"]["value"])
+        self.assertEqual(said["range"], range_of(text, at, at + len('"hc-sr04"')))
+        sections = server.ask("textDocument/documentSymbol", textDocument={"uri": uri(robot)})
+        [eye] = sections[0]["children"]
+        at = text.index("eye")
+        self.assertEqual(eye["selectionRange"], range_of(text, at, at + 3))
+        self.assertEqual(eye["range"], range_of(text, text.index('{"name": "eye"'), len(text)))
+
     def test_exit_codes(self):
         server = self.server()
         server.send({"method": "exit"})

@@ -1,6 +1,7 @@
 // An editor beside the server, in one process: texts go in and come out, and nothing waits.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,6 +16,14 @@
 namespace robosync::test {
 
 using Json = nlohmann::ordered_json;
+using Words = std::vector<std::string>;
+
+inline bool has(const Words& words, const std::string& word) {
+  return std::ranges::find(words, word) != words.end();
+}
+inline bool has_all(const Words& words, const Words& wanted) {
+  return std::ranges::all_of(wanted, [&](const std::string& word) { return has(words, word); });
+}
 
 inline constexpr const char* kEditorsRobot = R"({
   "sensors": [

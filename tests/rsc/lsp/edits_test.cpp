@@ -58,33 +58,58 @@ private:
   std::u16string text_;
 };
 
-const std::u16string kPieces[] = {u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n",
-                                  u"% ä🤖𝄞\n",
-                                  u"\n",
-                                  u"\r\n",
-                                  u"\r",
-                                  u" ",
-                                  u"🤖",
-                                  u"END\n",
-                                  u"STATE mood: calm, wild\n",
-                                  u"mood IS ",
-                                  u"\"",
-                                  u"DEFINE greet WITH how\n  SAY how\nEND\n",
-                                  u"greet WITH 3\n",
-                                  u"BEHAVIOR b PRIORITY 3\n",
-                                  u"touch ",
-                                  u"LEVEL",
-                                  u"(",
-                                  u")",
-                                  u", ",
-                                  u"USE gestures\n",
-                                  u"PLAY sound \"greeting.wav\"\n",
-                                  u"TEST \"t\"\n  AT 1s touch LEVEL = 2\nEND\n",
-                                  u"3cm",
-                                  u"",
-                                  u"",
-                                  u"",
-                                  u""};
+using Pieces = std::vector<std::u16string>;
+const Pieces kPieces = {u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n",
+                        u"% ä🤖𝄞\n",
+                        u"\n",
+                        u"\r\n",
+                        u"\r",
+                        u" ",
+                        u"🤖",
+                        u"END\n",
+                        u"STATE mood: calm, wild\n",
+                        u"mood IS ",
+                        u"\"",
+                        u"DEFINE greet WITH how\n  SAY how\nEND\n",
+                        u"greet WITH 3\n",
+                        u"BEHAVIOR b PRIORITY 3\n",
+                        u"touch ",
+                        u"LEVEL",
+                        u"(",
+                        u")",
+                        u", ",
+                        u"USE gestures\n",
+                        u"PLAY sound \"greeting.wav\"\n",
+                        u"TEST \"t\"\n  AT 1s touch LEVEL = 2\nEND\n",
+                        u"3cm",
+                        u"",
+                        u"",
+                        u"",
+                        u""};
+
+const Pieces kPiecesOfRobot = {u"{\"name\": \"touch\", \"device\": \"hc-sr04\"}",
+                               u"\"sensors\": [",
+                               u"\"channels\": {\"LEVEL\": {\"range\": [0, 9]}}",
+                               u"\"actuators\": [{\"device\": \"servo\", \"name\": \"🤖\"}],",
+                               u"\"groups\": {\"arms\": [\"left_arm\"]}",
+                               u"\"board\": \"microbit-v2\",",
+                               u"{",
+                               u"}",
+                               u"[",
+                               u"]",
+                               u"[[[[[[[[",
+                               u"\"",
+                               u"\\",
+                               u":",
+                               u",",
+                               u"🤖",
+                               u"\r",
+                               u"\n",
+                               u" ",
+                               u"",
+                               u"",
+                               u"",
+                               u""};
 
 constexpr const char* kQuestions[] = {
     "completion",     "hover",      "definition", "references",          "prepareRename", "rename",
@@ -95,9 +120,15 @@ std::size_t number_of_edits() {
   return wanted == nullptr ? 1000 : std::strtoul(wanted, nullptr, 10);
 }
 
+const std::u16string kProgram = u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n";
+
 class Typist {
 public:
-  explicit Typist(unsigned seed) : random_(seed) { editor_.open("robot.rsl", text_.utf8()); }
+  Typist(unsigned seed, std::string name, std::u16string text, const Pieces& pieces)
+      : random_(seed), name_(std::move(name)), pieces_(pieces), text_(std::move(text)) {
+    editor_.open("robot.rsl", Text(kProgram).utf8());
+    if (name_ != "robot.rsl") editor_.open(name_, text_.utf8());
+  }
 
   void change() {
     Json changes = Json::array();
@@ -108,7 +139,7 @@ public:
       while (text_.is_between(end))
         ++end;
       const std::u16string by =
-          text_.size() > 3000 && end == begin ? u"" : kPieces[below(std::size(kPieces))];
+          text_.size() > 3000 && end == begin ? u"" : pieces_[below(pieces_.size())];
       changes.push_back({{"range", {{"start", text_.place(begin)}, {"end", text_.place(end)}}},
                          {"text", Text(by).utf8()}});
       text_.replace(begin, end, by);
@@ -117,10 +148,9 @@ public:
         changes.push_back({{"text", ""}});
       }
     }
-    editor_.tell(
-        "textDocument/didChange",
-        {{"textDocument", {{"uri", editor_.uri("robot.rsl")}, {"version", ++editor_.version}}},
-         {"contentChanges", changes}});
+    editor_.tell("textDocument/didChange",
+                 {{"textDocument", {{"uri", editor_.uri(name_)}, {"version", ++editor_.version}}},
+                  {"contentChanges", changes}});
   }
   // A moment in which nothing is typed.
   void rest() { editor_.rest(); }
@@ -129,21 +159,19 @@ public:
   void ask() {
     const std::string question = kQuestions[below(std::size(kQuestions))];
     const Json at = text_.place(place());
-    (void)editor_.ask("textDocument/" + question,
-                      {{"textDocument", {{"uri", editor_.uri("robot.rsl")}}},
-                       {"position", at},
-                       {"range", {{"start", at}, {"end", at}}},
-                       {"newName", "other"},
-                       {"context", {{"includeDeclaration", true}}}});
+    (void)editor_.ask("textDocument/" + question, {{"textDocument", {{"uri", editor_.uri(name_)}}},
+                                                   {"position", at},
+                                                   {"range", {{"start", at}, {"end", at}}},
+                                                   {"newName", "other"},
+                                                   {"context", {{"includeDeclaration", true}}}});
     editor_.answers.clear();
     editor_.others.clear();
   }
 
   bool is_same() const {
-    return editor_.server().workspace().find(editor_.uri("robot.rsl"))->source.text() ==
-           text_.utf8();
+    return editor_.server().workspace().find(editor_.uri(name_))->source.text() == text_.utf8();
   }
-  std::int64_t shown() const { return editor_.shown.at(editor_.uri("robot.rsl")).at("version"); }
+  std::int64_t shown() const { return editor_.shown.at(editor_.uri(name_)).at("version"); }
   std::int64_t version() const { return editor_.version; }
 
 private:
@@ -156,14 +184,13 @@ private:
   }
 
   std::mt19937 random_;
+  std::string name_;
+  const Pieces& pieces_;
   Editor editor_;
-  Text text_{u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n"};
+  Text text_;
 };
 
-}  // namespace
-
-TEST_CASE("after any changes the text is that of the editor, and every question has an answer") {
-  Typist typist(17);
+void type_and_ask(Typist typist) {
   const std::size_t edits = number_of_edits();
   for (std::size_t i = 0; i < edits; ++i) {
     typist.change();
@@ -174,4 +201,14 @@ TEST_CASE("after any changes the text is that of the editor, and every question 
     typist.rest();
     REQUIRE(typist.shown() == typist.version());
   }
+}
+
+}  // namespace
+
+TEST_CASE("after any changes the text is that of the editor, and every question has an answer") {
+  type_and_ask(Typist(17, "robot.rsl", kProgram, kPieces));
+}
+
+TEST_CASE("after any changes of a robot.json the text is that of the editor, too") {
+  type_and_ask(Typist(18, "robot.json", u"{\"sensors\": [{\"name\": \"touch\"}]}", kPiecesOfRobot));
 }

@@ -8,21 +8,13 @@
 
 using namespace robosync;
 using Catch::Contains;
-using test::Editor, test::Json, test::Marked;
-using Words = std::vector<std::string>;
+using test::Editor, test::Json, test::Marked, test::Words, test::has, test::has_all;
 
 namespace {
 
 constexpr const char* kBefore =
     "STATE mood: calm, very wild\nFEELING joy FROM 0% TO 100% START 0%\nREMEMBER total = 0\n";
 constexpr const char* kAfter = "\nWHEN proximity DISTANCE < 1m DO SET mood TO calm\nEND\n";
-
-bool has(const Words& words, const std::string& word) {
-  return std::ranges::find(words, word) != words.end();
-}
-bool has_all(const Words& words, const Words& wanted) {
-  return std::ranges::all_of(wanted, [&](const std::string& word) { return has(words, word); });
-}
 
 Words offered(const std::string& marked) {
   Editor editor;
@@ -133,71 +125,6 @@ TEST_CASE("a completion replaces the word that is begun, and says what it is") {
   CHECK(found->at("textEdit").at("range").at("start").at("character") == 15);
   CHECK_THAT(found->at("detail").get<std::string>(), Contains("from 2cm to 400cm"));
   CHECK_THAT(found->at("documentation").at("value").get<std::string>(), Contains("Device: "));
-}
-
-namespace {
-
-// What is offered at the marked place of a robot.json.
-std::vector<std::string> offered_in_robot(const std::string& marked) {
-  Editor editor;
-  const Marked text(marked);
-  editor.open("robot.rsl", "WHEN touch LEVEL > 3 DO STOP ALL\nEND\n");
-  editor.open("robot.json", text.text);
-  const Json result =
-      editor.ask("textDocument/completion",
-                 {{"textDocument", {{"uri", editor.uri("robot.json")}}}, {"position", text.place}});
-  std::vector<std::string> labels;
-  for (const Json& item : result.at("items"))
-    labels.push_back(item.at("label"));
-  return labels;
-}
-
-}  // namespace
-
-TEST_CASE("a robot.json is offered the keys that an object lacks, also while it is no JSON yet") {
-  const auto of_robot = offered_in_robot("{\"sensors\": [],\n  |\n  \"groups\": {}}\n");
-  CHECK(has_all(of_robot, {"board", "actuators", "pictures"}));
-  CHECK_FALSE(has(of_robot, "sensors"));
-  CHECK_FALSE(has(of_robot, "groups"));
-  const auto of_sensor = offered_in_robot("{\"sensors\": [{\"name\": \"touch\", \"de|\n");
-  CHECK(has_all(of_sensor, {"device", "channels"}));
-  CHECK_FALSE(has(of_sensor, "name"));
-  CHECK_FALSE(has(of_sensor, "speeds"));
-  const std::string channel =
-      "{\"sensors\": [{\"channels\": {\"LEVEL\": {\"range\": [0, 9], |}}}]}\n";
-  CHECK(has_all(offered_in_robot(channel), {"rate", "stale_after"}));
-  CHECK(has(offered_in_robot("{\"actuators\": [{\"limits\": {|"), "SPEED"));
-  CHECK(offered_in_robot("{\"sensors\": [{\"channels\": {|").empty());  // names of one's own
-  CHECK(offered_in_robot("{\"sensors\": [|").empty());
-  CHECK(offered_in_robot("|").empty());
-}
-
-TEST_CASE("a robot.json is offered devices, types and boards, each in its place") {
-  const auto sensor = offered_in_robot("{\"sensors\": [{\"device\": \"|\"}]}\n");
-  CHECK(has_all(sensor, {"hc-sr04", "button"}));
-  CHECK_FALSE(has(sensor, "servo"));
-  CHECK(has(offered_in_robot("{\"actuators\": [{\"device\": |"), "servo"));
-  CHECK(has(offered_in_robot("{\"actuators\": [{\"type\": \"P|"), "PWM"));
-  CHECK(has(offered_in_robot("{\"board\": |"), "microbit-v2"));
-  CHECK(offered_in_robot("{\"name\": \"|\"}").empty());
-}
-
-TEST_CASE("what is completed in a robot.json replaces what is typed, with its quotes") {
-  Editor editor;
-  const Marked text("{\"boa|\": 1}\n");
-  editor.open("robot.rsl", "WHEN touch LEVEL > 3 DO STOP ALL\nEND\n");
-  editor.open("robot.json", text.text);
-  const Json items =
-      editor
-          .ask("textDocument/completion",
-               {{"textDocument", {{"uri", editor.uri("robot.json")}}}, {"position", text.place}})
-          .at("items");
-  const auto board =
-      std::ranges::find_if(items, [](const Json& one) { return one.at("label") == "board"; });
-  REQUIRE(board != items.end());
-  CHECK(board->at("textEdit").at("newText") == "\"board\"");
-  CHECK(board->at("textEdit").at("range").at("start").at("character") == 1);
-  CHECK(board->at("textEdit").at("range").at("end").at("character") == 6);
 }
 
 TEST_CASE("hover says what a name is") {
