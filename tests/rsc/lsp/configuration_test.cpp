@@ -318,11 +318,13 @@ TEST_CASE("whatever is missing or repeated in a robot.json, its outline is in or
       else
         text.insert(at, text.substr(random() % text.size(), size));
     }
+    if (random() % 2 == 0) text.resize(random() % text.size());
     const compiler::SourceFile source("", text);
     CAPTURE(text);
     check_items(compiler::query::outline_configuration(source, 0),
                 {0, 0, static_cast<std::uint32_t>(text.size())});
-    (void)compiler::query::describe_configuration(
-        source, 0, static_cast<std::uint32_t>(random() % (text.size() + 1)), {});
+    for (const std::size_t at : {random() % (text.size() + 1), text.size()})
+      CHECK_NOTHROW(
+          compiler::query::describe_configuration(source, 0, static_cast<std::uint32_t>(at), {}));
   }
 }
