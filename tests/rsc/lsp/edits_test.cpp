@@ -214,6 +214,6 @@ TEST_CASE("after any changes the text is that of the editor, and every question 
 }
 
 TEST_CASE("after any changes of a robot.json the text is that of the editor, too") {
-  type_and_ask(Typist(18, "robot.json", u"{\"sensors\": [{\"name\": \"touch\"}]}", kPiecesOfRobot),
-               1);
+  const std::string robot = test::kEditorsRobot;
+  type_and_ask(Typist(18, "robot.json", {robot.begin(), robot.end()}, kPiecesOfRobot), 1);
 }
