@@ -11,6 +11,11 @@
 
 namespace robosync::compiler {
 
+bool draws(const Expression& expression) {
+  return expression.operation == Operation::random ||
+         std::ranges::any_of(expression.operands, draws);
+}
+
 // ---- W0210: one comparison, by the ranges of its sides
 
 namespace {
@@ -158,11 +163,6 @@ constexpr std::size_t kMostRanges = 64;
 bool same_side(const std::optional<Asked>& a, const std::optional<Asked>& b) {
   return a && b && a->may.size() + b->may.size() <= kMostRanges &&
          a->must.size() + b->must.size() <= kMostRanges && *a->side == *b->side;
-}
-
-bool draws(const Expression& expression) {
-  return expression.operation == Operation::random ||
-         std::ranges::any_of(expression.operands, draws);
 }
 
 std::optional<Intervals> ranges_of(Operation comparison, std::int64_t number) {

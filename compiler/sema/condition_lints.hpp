@@ -7,6 +7,9 @@
 
 namespace robosync::compiler {
 
+// True for a random value: it is drawn anew each time, so it is not even equal to itself.
+[[nodiscard]] bool draws(const Expression& expression);
+
 // W0210: the ranges of the sides decide the comparison.
 void lint_comparison(ast::Relation relation, const Typed& left, const Typed& right, Span span,
                      Diagnostics& diagnostics);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compiler/ir/walk.hpp"
+#include "compiler/sema/condition_lints.hpp"
 #include "compiler/sema/intervals.hpp"
 #include "compiler/syntax/walk.hpp"
 #include "compiler/units/units.hpp"
@@ -50,12 +51,6 @@ std::optional<Threshold> threshold(const Expression& condition) {
     default:
       return std::nullopt;
   }
-}
-
-// True for a random value: it is drawn anew each time, so it is not even equal to itself.
-bool draws(const Expression& expression) {
-  return expression.operation == Operation::random ||
-         std::any_of(expression.operands.begin(), expression.operands.end(), draws);
 }
 
 }  // namespace
