@@ -69,6 +69,7 @@ target_sources(robosync_compiler_small PRIVATE
   diagnostics/render_json.cpp
   diagnostics/sarif.cpp
   diagnostics/snippet.cpp
+  syntax/breaks.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
   syntax/format.cpp

@@ -11,6 +11,7 @@
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/utf8.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/breaks.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::size_t kIndent = 2;         // columns per level
 constexpr std::size_t kBeforeComment = 2;  // columns, at least
+constexpr std::size_t kWidest = 100;       // columns, of a block that stands on one line
 constexpr std::string_view kWhiteSpace = " \t\v\f\r";
 
 // Takes a space on either side. Minus is not here: it may be a sign.
@@ -62,6 +64,14 @@ Tokens without_idle_ends(Tokens& all) {
   return seen;
 }
 
+// Keywords that are names become names.
+void set_names(Tokens& tokens, const ast::Tree& tree) {
+  for (const Span& name : tree.keyword_names)
+    std::ranges::lower_bound(tokens, name.begin, {}, [](const Token& token) {
+      return token.span.begin;
+    })->kind = Kinds::NAME;
+}
+
 // ---- indentation
 
 struct Block {
@@ -75,11 +85,11 @@ bool has_do(TokenKind opener) {
                    {Kinds::WHEN, Kinds::WHILE, Kinds::EVERY, Kinds::AT, Kinds::IF, Kinds::SAFETY});
 }
 
-// Words of a rule that are aligned with its first word.
-bool is_part_of_rule(TokenKind first) {
-  return is_one_of(
-      first, {Kinds::WHEN, Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::RESUME, Kinds::PRIORITY,
-              Kinds::COOLDOWN, Kinds::MARGIN, Kinds::WAITING, Kinds::RESTARTING});
+// Words of a rule that are aligned with its first word. In its body, those of its head are something else.
+bool is_part_of_rule(TokenKind first, bool in_body) {
+  if (is_one_of(first, {Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF, Kinds::RESUME})) return true;
+  return !in_body && is_one_of(first, {Kinds::WHEN, Kinds::PRIORITY, Kinds::COOLDOWN, Kinds::MARGIN,
+                                       Kinds::WAITING, Kinds::RESTARTING});
 }
 
 // The level of the block's statements, and of comments between them.
@@ -93,8 +103,7 @@ std::size_t level_in(const Block& block, TokenKind first) {
   if (first == Kinds::END) return block.level;
   if (block.opener == Kinds::PICK && first == Kinds::OPTION) return block.level + 1;
   if (!has_do(block.opener)) return inner_level(block);
-  if (is_part_of_rule(first) && !(block.body && first == Kinds::WHEN))
-    return inner_level(block) - 1;
+  if (is_part_of_rule(first, block.body)) return inner_level(block) - 1;
   return inner_level(block) + (block.body ? 0U : 1U);  // a condition continues
 }
 
@@ -111,20 +120,26 @@ enum class Table : std::uint8_t { none, motion, bands };
 
 struct Line {
   std::size_t level = 0;
-  std::vector<std::string> cells;  // one, except in rows of a table
-  std::string_view comment;
+  std::vector<std::string> cells{};  // one, except in rows of a table
+  std::string_view comment{};
   // The lexer warns that this may not be meant as a comment, because it is so near to the code: it stays there.
   bool is_doubtful = false;
   Table table = Table::none;
+  bool begins_item = false;  // outside all blocks
+  bool is_long = false;      // … and the item has more lines
+  bool is_apart = false;     // a blank line is above it
 
   [[nodiscard]] bool is_blank() const { return cells.empty() && comment.empty(); }
+  [[nodiscard]] bool is_comment() const { return cells.empty() && !comment.empty(); }
 };
 
 bool touch(const Token& left, const Token& right) {
   return left.span.end == right.span.begin;
 }
 
-bool begins_cell(Table table, const Tokens& tokens, std::size_t at) {
+using Words = std::span<const Token>;  // of one line
+
+bool begins_cell(Table table, Words tokens, std::size_t at) {
   const TokenKind kind = tokens[at].kind;
   if (table == Table::bands)
     return is_one_of(kind, {Kinds::BELOW, Kinds::ABOVE, Kinds::BETWEEN, Kinds::OTHERWISE});
@@ -136,7 +151,7 @@ bool begins_cell(Table table, const Tokens& tokens, std::size_t at) {
 
 // True for a minus that subtracts. Its spacing distinguishes it from a sign, except inside brackets, where two values are
 // never adjacent.
-bool is_operator(Table table, const Tokens& tokens, std::size_t at, int depth) {
+bool is_operator(Table table, Words tokens, std::size_t at, int depth) {
   if (tokens[at].kind != Kinds::MINUS || at == 0 || at + 1 == tokens.size() ||
       (table == Table::motion && depth == 0))
     return false;
@@ -148,8 +163,11 @@ bool is_operator(Table table, const Tokens& tokens, std::size_t at, int depth) {
 class Formatter {
 public:
   Formatter(const SourceMap& sources, FileId file, const ast::Tree& tree)
-      : source_(sources.file(file)), tree_(tree), all_(lex(source_, file, ignored_)) {
+      : source_(sources.file(file)), all_(lex(source_, file, ignored_)) {
     seen_ = without_idle_ends(all_);
+    set_names(all_, tree);
+    set_names(seen_, tree);
+    places_ = places_of(seen_);
   }
 
   // False when a line holds anything but words and comments.
@@ -162,11 +180,13 @@ public:
 
   std::string write() {
     align_tables();
+    separate_items();
     align_comments();
     std::string text;
     bool blank = true;  // no blank lines at the beginning
     for (const Line& line : lines_) {
       if (line.is_blank() && blank) continue;
+      if (line.is_apart && !blank) text += '\n';
       blank = line.is_blank();
       text += shown(line) + '\n';
     }
@@ -199,24 +219,70 @@ private:
     const std::size_t begin = source_.line_start(number);
     const std::string_view text = source_.line(number);
     const Tokens tokens = tokens_of(begin + text.size());
-    Line line;
     const std::size_t code = tokens.empty() ? 0 : tokens.back().span.end - begin;
-    line.comment = trimmed(utf8::without_byte_order_mark(text.substr(std::min(code, text.size()))));
-    line.is_doubtful = is_doubtful(line.comment);
-    if (!line.comment.empty() && line.comment.front() != '#' && line.comment.front() != '%')
-      return false;
-    if (tokens.empty()) {
-      line.level = level_of_comment(blocks_);
-    } else {
-      skip_to(tokens.front(), walk);
-      line.level = level_of(tokens.front().kind);
-      line.table = table_of(tokens);
-      line.cells = cells_of(tokens, line.table);
-      for (std::size_t i = 0; i < tokens.size(); ++i)
-        step(walk, line.level);
-    }
-    lines_.push_back(std::move(line));
+    const std::string_view comment =
+        trimmed(utf8::without_byte_order_mark(text.substr(std::min(code, text.size()))));
+    if (!comment.empty() && comment.front() != '#' && comment.front() != '%') return false;
+    if (tokens.empty())
+      lines_.push_back({.level = level_of_comment(blocks_)});
+    else
+      add_lines(tokens, !comment.empty(), walk);
+    lines_.back().comment = comment;
+    lines_.back().is_doubtful = is_doubtful(comment);
     return true;
+  }
+
+  void add_lines(Words words, bool has_comment, BlockWalk& walk) {
+    skip_to(words.front(), walk);
+    std::size_t breakable = breakable_of(words, has_comment);
+    while (!words.empty()) {
+      const std::size_t length = length_of_line(words, breakable);
+      add_line(words.first(length), walk);
+      words = words.subspan(length);
+      breakable -= std::min(breakable, length);
+    }
+  }
+
+  // A line break may stand in front of so many of the words of a line. A DO at its end stays behind its condition. A comment
+  // stays beside what it is about: not that END, if the block began further up.
+  std::size_t breakable_of(Words words, bool has_comment) const {
+    std::size_t last = words.size() - 1;
+    if (places_[at_ + last].ends_head) return last;
+    while (has_comment && last > 0 && words[last].kind == Kinds::END &&
+           places_[at_ + last].partner < at_)
+      --last;
+    return last + 1;
+  }
+
+  // How many of the words stand on the line that the first of them begins.
+  std::size_t length_of_line(Words words, std::size_t breakable) const {
+    std::size_t length = 1;
+    const std::size_t partner = places_[at_].partner;
+    if (partner > at_ && partner < at_ + words.size() && fits(words.first(partner + 1 - at_)))
+      length = partner + 1 - at_;
+    while (length < words.size() && (length >= breakable || !places_[at_ + length].begins_line))
+      ++length;
+    return length;
+  }
+
+  bool fits(Words words) const {
+    const std::string text = cells_of(words, Table::none).front();
+    return kIndent * level_of(words.front().kind) + width_of(text) <= kWidest;
+  }
+
+  void add_line(Words words, BlockWalk& walk) {
+    Line line;
+    line.level = level_of(words.front().kind);
+    line.table = table_of(words);
+    line.cells = cells_of(words, line.table);
+    line.begins_item = blocks_.empty() && !is_within_statement();
+    if (line.begins_item)
+      item_ = lines_.size();
+    else
+      lines_[item_].is_long = true;
+    for (std::size_t i = 0; i < words.size(); ++i)
+      step(walk, line.level);
+    lines_.push_back(std::move(line));
   }
 
   // Passes the end of the line before, if it counts.
@@ -239,16 +305,23 @@ private:
     return level + (goes_on(first) ? 1U : 0U);
   }
 
+  bool is_within_statement() const {
+    return at_ > 0 && seen_[at_ - 1].kind != Kinds::NEWLINE && !places_[at_].begins_line;
+  }
+
   // True when the line continues the one before and is not part of a block; level_in() handles conditions.
   bool goes_on(TokenKind first) const {
-    if (at_ == 0 || seen_[at_ - 1].kind == Kinds::NEWLINE) return false;
-    if (is_one_of(first, {Kinds::END, Kinds::OPTION, Kinds::SMOOTH}) || is_part_of_rule(first))
-      return false;
-    if (!blocks_.empty() && has_do(blocks_.back().opener) && !blocks_.back().body) return false;
+    if (!is_within_statement() || is_one_of(first, {Kinds::SMOOTH, Kinds::PRIORITY})) return false;
+    if (!blocks_.empty()) {
+      const Block& block = blocks_.back();
+      if (has_do(block.opener) ? !block.body
+                               : block.opener == Kinds::CHECK && first == Kinds::MARGIN)
+        return false;
+    }
     return (roles_of(seen_[at_ - 1].kind) & role::begins) == 0;
   }
 
-  Table table_of(const Tokens& tokens) const {
+  Table table_of(Words tokens) const {
     if (blocks_.empty()) return Table::none;
     const TokenKind opener = blocks_.back().opener;
     if (opener == Kinds::MOTION && tokens.front().kind == Kinds::AT) return Table::motion;
@@ -258,7 +331,7 @@ private:
     return opener == Kinds::CHECK && band ? Table::bands : Table::none;
   }
 
-  std::vector<std::string> cells_of(const Tokens& tokens, Table table) const {
+  std::vector<std::string> cells_of(Words tokens, Table table) const {
     std::vector<std::string> cells{text_of(tokens.front())};
     int depth = 0;
     for (std::size_t i = 1; i < tokens.size(); ++i) {
@@ -277,14 +350,10 @@ private:
     return cells;
   }
 
-  // Where a name is expected, a keyword may be one: it stays as it is.
   std::string text_of(const Token& token) const {
     if (token.kind == Kinds::ELSE_IF) return "ELSE IF";
     std::string text(source_.text(token.span));
-    const bool is_name = std::ranges::binary_search(tree_.keyword_names, token.span.begin, {},
-                                                    [](const Span& span) { return span.begin; });
-    if (is_keyword(token.kind) && !is_name)
-      std::ranges::transform(text, text.begin(), ascii::upper);
+    if (is_keyword(token.kind)) std::ranges::transform(text, text.begin(), ascii::upper);
     return text;
   }
 
@@ -338,14 +407,29 @@ private:
       return !line.comment.empty() && !line.cells.empty() && !line.is_doubtful;
     };
     columns_.clear();
-    each_run([&](const Line& a, const Line& b) { return has_both(a) && has_both(b); },
-             [&](std::span<Line> lines) {
-               std::size_t width = 0;
-               for (const Line& line : lines)
-                 width = std::max(width, width_of(code_of(line)));
-               const std::size_t before = lines.front().is_doubtful ? 1 : kBeforeComment;
-               columns_.insert(columns_.end(), lines.size(), width + before);
-             });
+    each_run(
+        [&](const Line& a, const Line& b) { return has_both(a) && has_both(b) && !b.is_apart; },
+        [&](std::span<Line> lines) {
+          std::size_t width = 0;
+          for (const Line& line : lines)
+            width = std::max(width, width_of(code_of(line)));
+          const std::size_t before = lines.front().is_doubtful ? 1 : kBeforeComment;
+          columns_.insert(columns_.end(), lines.size(), width + before);
+        });
+  }
+
+  // A comment right above an item belongs to it.
+  void separate_items() {
+    const Line* before = nullptr;
+    for (std::size_t at = 0; at < lines_.size(); ++at) {
+      const Line& line = lines_[at];
+      if (!line.begins_item) continue;
+      std::size_t first = at;
+      while (first > 0 && lines_[first - 1].is_comment())
+        --first;
+      if (before != nullptr) lines_[first].is_apart = before->is_long || line.is_long;
+      before = &line;
+    }
   }
 
   std::string shown(const Line& line) const {
@@ -358,21 +442,33 @@ private:
 
   Diagnostics ignored_;
   const SourceFile& source_;
-  const ast::Tree& tree_;
   Tokens all_, seen_;
   std::size_t next_ = 0;  // in all_
   std::size_t at_ = 0;    // in seen_
+  std::size_t item_ = 0;  // its first line, in lines_
+  std::vector<Place> places_;
   std::vector<Block> blocks_;
   std::vector<Line> lines_;
   std::vector<std::size_t> columns_;  // of the comment in each line
 };
+
+// The line ends that the style may add: behind OPTION, behind its weight, and behind the name of a SAFETY.
+bool is_optional_end(const Tokens& tokens, std::size_t at) {
+  if (tokens[at].kind != Kinds::NEWLINE || at < 2) return false;
+  const TokenKind before = tokens[at - 2].kind, last = tokens[at - 1].kind;
+  return last == Kinds::OPTION || (last == Kinds::QUANTITY && before == Kinds::OPTION) ||
+         before == Kinds::SAFETY;
+}
 
 // The words of a text, as the grammar sees them.
 std::vector<std::pair<TokenKind, std::string>> words_of(const SourceMap& sources, FileId file) {
   Diagnostics ignored;
   Tokens all = lex(sources.file(file), file, ignored);
   std::vector<std::pair<TokenKind, std::string>> words;
-  for (const Token& token : without_idle_ends(all)) {
+  const Tokens seen = without_idle_ends(all);
+  for (std::size_t at = 0; at < seen.size(); ++at) {
+    if (is_optional_end(seen, at)) continue;
+    const Token& token = seen[at];
     const bool named = token.kind != Kinds::NEWLINE && !is_keyword(token.kind);
     words.emplace_back(token.kind, named ? sources.text(token.span) : "");
   }

@@ -1,8 +1,8 @@
-// The one style of RSL: blocks are indented, words have one blank or none between them, rows of a table are aligned,
-// keywords are in capitals.
+// The one style of RSL: no two statements share a line, blocks are indented, words have one blank or none between them, rows
+// of a table are aligned, keywords are in capitals, and items of more than one line have a blank line between them.
 //
-// Lines and names stay as they are: only the space between words and the case of keywords change, and repeated blank lines
-// become one. The program's meaning stays the same, which is checked.
+// Lines are split (breaks.hpp), but never joined; repeated blank lines become one. Words and comments keep their order, so
+// the program's meaning stays the same, which is checked.
 #pragma once
 
 #include <optional>

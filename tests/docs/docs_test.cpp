@@ -76,6 +76,20 @@ TEST_CASE("every program in docs/tutorial.md works on the robot.json it begins w
   check_page("docs/tutorial.md", files.front(), 10);
 }
 
+TEST_CASE("every program in the documentation is in the standard style") {
+  const Folder folder;
+  std::size_t programs = 0;
+  for (const auto& page : std::filesystem::directory_iterator(kRoot / "docs")) {
+    if (page.path().extension() != ".md") continue;
+    for (const std::string& program : blocks(page.path(), "rsl")) {
+      INFO(page.path() << '\n' << program);
+      ++programs;
+      check_runs(rsc({"fmt", "--check", folder.write("robot.rsl", program)}));
+    }
+  }
+  CHECK(programs > 100);
+}
+
 TEST_CASE("the scenarios of docs/tutorial.md do what it says") {
   const auto files = blocks(kRoot / "docs/tutorial.md", "json");
   REQUIRE(files.size() == 4);

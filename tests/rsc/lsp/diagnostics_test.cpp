@@ -242,7 +242,8 @@ TEST_CASE("all that is certain is mended at once") {
 
 TEST_CASE("formatting gives what rsc fmt writes, as a change of whole lines") {
   Editor editor;
-  const std::string before = "% 🤖\nWHEN touch LEVEL<3\nDO\nLOG \"x\"\nEND\n";
+  const std::string before =
+      "% 🤖\nWHEN touch LEVEL<3 DO LOG \"x\" ELSE LOG \"y\" END\nLET a = 1\n";
   editor.open("robot.rsl", before);
   const Json params = {{"textDocument", {{"uri", editor.uri("robot.rsl")}}}};
   const Json edits = editor.ask("textDocument/formatting", params);
