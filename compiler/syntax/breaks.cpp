@@ -51,7 +51,6 @@ private:
         line_ends(at, frame);
         break;
       case Kinds::DO:
-        places_[at].ends_head = frame.first == 0;
         divides(at, frame, at + 1, frame.is_plain && frame.first == 0);
         break;
       case Kinds::ELSE:

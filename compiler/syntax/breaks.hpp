@@ -14,8 +14,6 @@ namespace robosync::compiler {
 
 struct Place {
   bool begins_line = false;
-  bool ends_head =
-      false;  // a DO behind a condition: it may also stay behind that, with nothing behind it
   // Of an END: the word that opens its block. Of a word that opens a block which may stand on one line: its END. Else 0.
   std::uint32_t partner = 0;
 };

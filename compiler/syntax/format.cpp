@@ -243,11 +243,10 @@ private:
     }
   }
 
-  // A line break may stand in front of so many of the words of a line. A DO at its end stays behind its condition. A comment
-  // stays beside what it is about: not that END, if the block began further up.
+  // A line break may stand in front of so many of the words of a line. A comment stays beside what it is about: not that
+  // END, if the block began further up.
   std::size_t breakable_of(Words words, bool has_comment) const {
     std::size_t last = words.size() - 1;
-    if (places_[at_ + last].ends_head) return last;
     while (has_comment && last > 0 && words[last].kind == Kinds::END &&
            places_[at_ + last].partner < at_)
       --last;

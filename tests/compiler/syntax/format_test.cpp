@@ -87,8 +87,8 @@ TEST_CASE("each kind of line has its place") {
 
 TEST_CASE("one space around what calculates, whatever stood there") {
   const auto line = [](const std::string& text) {
-    const std::string all = styled("AT START DO\n" + text + "\nEND\n");
-    const std::size_t begin = all.find('\n') + 3;
+    const std::string all = styled("AT START\nDO\n" + text + "\nEND\n");
+    const std::size_t begin = all.find("DO\n") + 5;
     return all.substr(begin, all.find('\n', begin) - begin);
   };
   CHECK(line("TURN head TO (voice direction / 2)over 2seconds") ==
@@ -124,7 +124,7 @@ TEST_CASE("keywords are in capitals, names as they were written") {
   // Keywords where only a name is possible: a variable, a channel, a word of a command, a label.
   CHECK(styled("remember option = 1\nwhen touch motion > option do\n  set option to 4\n  move arms "
                "from\nend") ==
-        "REMEMBER option = 1\n\nWHEN touch motion > option DO\n  SET option TO 4\n  move arms "
+        "REMEMBER option = 1\n\nWHEN touch motion > option\nDO\n  SET option TO 4\n  move arms "
         "from\nEND\n");
   CHECK(styled("state lower: calm, stop") == "STATE lower: calm, stop\n");
 }
