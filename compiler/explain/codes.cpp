@@ -21,7 +21,7 @@ std::string indented(std::string_view text) {
   std::string result;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    result += fmt::format("    {}\n", text.substr(0, end));
+    result += fmt::format("{}{}\n", end == 0 ? "" : "    ", text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return result;

@@ -14,7 +14,7 @@ struct CodeText {
   Code code;
   std::string_view meaning;  // what is wrong, and why rsc reports it
   std::string_view wrong;    // an example with the mistake; may be empty
-  std::string_view mended;   // the same without the mistake; empty only if `wrong` is
+  std::string_view mended;   // the same without the mistake; may be empty
 };
 
 [[nodiscard]] std::span<const CodeText> code_texts();

@@ -42,11 +42,14 @@ struct Outcome {
   std::string text;
 };
 
-// RSL with a robot that has some of everything; or a robot.json with a program for any.
+// RSL with a robot that has some of everything; or a robot.json, with its program behind an empty line, or one for any robot.
 Outcome compile_example(std::string_view example) {
   const bool json = example.starts_with('{');
-  Result result = compile({"robot.rsl", json ? kProgram : std::string(example) + "\n"},
-                          {"robot.json", json ? std::string(example) : kRobot},
+  const std::size_t gap = json ? example.find("\n\n") : std::string_view::npos;
+  const bool both = gap != std::string_view::npos;
+  const std::string program(both ? example.substr(gap + 2) : example);
+  Result result = compile({"robot.rsl", json && !both ? kProgram : program + "\n"},
+                          {"robot.json", json ? std::string(example.substr(0, gap)) : kRobot},
                           {.algorithms = robosync::tool::algorithm_modules()});
   robosync::tool::judge(result, robosync::tool::Judged::by_time);
   Outcome outcome{
@@ -72,7 +75,10 @@ TEST_CASE("every diagnostic is explained, exactly once") {
   for (const explain::CodeText& text : explain::code_texts()) {
     INFO(code_name(text.code));
     CHECK(text.meaning.size() > 20);
-    CHECK(text.wrong.empty() == text.mended.empty());
+    CHECK((!text.wrong.empty() || text.mended.empty()));
+    // Each has a program that shows it, but for a bug of rsc and for what takes more than a page.
+    CHECK(text.wrong.empty() == (text.code == Code::E0013 || text.code == Code::E0499));
+    CHECK(text.mended.empty() == (text.wrong.empty() || text.code == Code::E0211));
   }
 }
 
@@ -83,6 +89,7 @@ TEST_CASE("the example gets its diagnostic, and the mended one does not") {
     const Outcome mended = compile_example(text.mended);
     CAPTURE(code_name(text.code), text.wrong, wrong.text, text.mended, mended.text);
     CHECK(wrong.codes.contains(text.code));
+    if (text.mended.empty()) continue;
     CHECK_FALSE(mended.codes.contains(text.code));
     CHECK(mended.errors == 0);
   }
