@@ -149,7 +149,15 @@ private:
     std::string (Filling::*say)() const;
   };
 
+  // The name that the line declares; it may be its first word, in a CHECK.
+  [[nodiscard]] std::string own_name(std::string_view otherwise) const {
+    const std::size_t place = line_.kind(0) == Kinds::NAME ? 0 : 1;
+    return std::string(line_.kind(place) == Kinds::NAME ? line_.text(place) : otherwise);
+  }
+
   [[nodiscard]] std::string say(std::string_view name) const {
+    constexpr std::string_view own = "own ";
+    if (name.starts_with(own)) return own_name(name.substr(own.size()));
     static constexpr std::array gaps = {
         Gap{"condition", &Filling::condition}, Gap{"command", &Filling::any_command},
         Gap{"reading", &Filling::reading},     Gap{"channel", &Filling::channel},
@@ -301,8 +309,10 @@ std::string Examples::written_like(const Tokens& piece, std::size_t at) const {
   return like_this(same ? "`" + verb + "`" : "a command", example);
 }
 
-std::string Examples::command() const {
-  const std::string text = robot_ == nullptr ? "" : robot_->command("", "", false);
+std::string Examples::command(std::string_view actuator, bool places) const {
+  std::string text;
+  if (robot_ != nullptr) text = robot_->command("", actuator, places);
+  if (robot_ != nullptr && text.empty()) text = robot_->command("", "", places);
   return text.empty() ? "MOVE left_arm UP SLOWLY" : text;
 }
 

@@ -37,7 +37,9 @@ public:
   // Empty when that token begins its line: then the kind of line is unknown.
   [[nodiscard]] std::string written_like(const Tokens& piece, std::size_t at) const;
   // "MOVE left_arm UP SLOWLY"
-  [[nodiscard]] std::string command() const;
+  [[nodiscard]] std::string command() const { return command("", false); }
+  // Of this actuator, if the robot has it; with `places`, as in Vocabulary.
+  [[nodiscard]] std::string command(std::string_view actuator, bool places) const;
   // "touch LEVEL > 5", about the first of these words that is a sensor; if none is, about any.
   [[nodiscard]] std::string condition(const std::vector<std::string_view>& words) const;
   // Of the robot; without a robot, of none.
