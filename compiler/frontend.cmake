@@ -44,27 +44,22 @@ target_sources(robosync_compiler PRIVATE
   source/character_names.cpp
   source/source_file.cpp
   source/utf8.cpp
-  diagnostics/diagnostic.cpp
   diagnostics/nearest.cpp
   diagnostics/plain_text.cpp
   syntax/blocks.cpp
   syntax/builder.cpp
   syntax/edit.cpp
-  syntax/heads.cpp
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
-  syntax/missing.cpp
-  syntax/parser.cpp
-  syntax/reader.cpp
-  syntax/repair.cpp
-  units/foreign_units.cpp)
+  syntax/reader.cpp)
 # Public for the tests, which look at tokens. SYSTEM silences warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # The code that words a mistake is long, runs seldom, and prints at most 20 messages.
 target_sources(robosync_compiler_small PRIVATE
   source/json.cpp
+  diagnostics/diagnostic.cpp
   diagnostics/render_human.cpp
   diagnostics/render_json.cpp
   diagnostics/sarif.cpp
@@ -72,12 +67,21 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/breaks.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
+  syntax/foreign_text.cpp
+  syntax/foreign_words.cpp
   syntax/format.cpp
   syntax/habits.cpp
+  syntax/heads.cpp
+  syntax/indented_blocks.cpp
   syntax/lexer_habits.cpp
+  syntax/lexer_mistakes.cpp
   syntax/lost_heads.cpp
   syntax/misplaced_words.cpp
+  syntax/missing.cpp
+  syntax/parser.cpp
+  syntax/repair.cpp
   syntax/robot_lines.cpp
   syntax/unit_apart.cpp
   syntax/wording.cpp
-  syntax/wrong_forms.cpp)
+  syntax/wrong_forms.cpp
+  units/foreign_units.cpp)

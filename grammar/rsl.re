@@ -60,8 +60,8 @@ bool LexerState::step() {
     "&&" | "&"                      { matched(); instead(Kinds::AND, "AND"); return true; }
     "||" | "|"                      { matched(); instead(Kinds::OR, "OR"); return true; }
     "!"                             { matched(); instead(Kinds::NOT, "NOT "); return true; }
-    ":="                            { matched(); instead(Kinds::EQUAL, "="); return true; }
-    ";"+                            { matched(); left_out("a statement ends with its line"); return true; }
+    ":="                            { matched(); assignment(); return true; }
+    ";"+                            { matched(); semicolon(); return true; }
     [{]                             { matched(); opening_brace(); return true; }
     [}]                             { matched(); closing_brace(); return true; }
     "//" [^\r\n]*                   { matched(); foreign_comment(); return true; }

@@ -100,6 +100,18 @@ bool is_called(const Spelled& own, std::string_view name) {
 
 }  // namespace
 
+std::vector<std::string_view> RobotVocabulary::reserved_names() const {
+  std::vector<std::string_view> names;
+  const auto add = [&names](const auto& parts) {
+    for (const auto& part : parts)
+      if (!may_name_a_part(part.name.text)) names.push_back(part.name.text);
+  };
+  add(robot_.sensors);
+  add(robot_.actuators);
+  add(robot_.groups);
+  return names;
+}
+
 std::string RobotVocabulary::part(Part part, std::string_view name) const {
   for (const SensorConfig& sensor : robot_.sensors)
     if (is_called(sensor.name, name))

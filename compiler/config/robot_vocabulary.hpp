@@ -10,6 +10,7 @@ class RobotVocabulary : public Vocabulary {
 public:
   explicit RobotVocabulary(const Robot& robot) : robot_(robot) {}  // must outlive this
 
+  [[nodiscard]] std::vector<std::string_view> reserved_names() const override;
   [[nodiscard]] std::string part(Part part, std::string_view name) const override;
   [[nodiscard]] std::string command(std::string_view verb, std::string_view name,
                                     bool places) const override;

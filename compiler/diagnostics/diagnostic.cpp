@@ -163,7 +163,7 @@ void make_likely(Diagnostic& diagnostic) {
     if (fix.applicability == Applicability::certain) fix.applicability = Applicability::likely;
 }
 
-bool is_word_byte(char c) {
+bool continues_word(char c) {
   return c == '_' || (static_cast<unsigned char>(c) & 0x80U) != 0 || ('0' <= c && c <= '9') ||
          ascii::is_letter(c);
 }
@@ -175,8 +175,8 @@ std::size_t uses_in(std::string_view text, std::string_view word) {
   for (std::size_t at = text.find(word); at != std::string_view::npos && found < kEnoughUses;
        at = text.find(word, at + 1)) {
     const std::size_t end = at + word.size();
-    const bool whole = (at == 0 || !is_word_byte(text[at - 1])) &&
-                       (end == text.size() || !is_word_byte(text[end]));
+    const bool whole = (at == 0 || !continues_word(text[at - 1])) &&
+                       (end == text.size() || !continues_word(text[end]));
     if (whole) ++found;
   }
   return found;

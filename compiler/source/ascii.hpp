@@ -32,4 +32,11 @@ namespace robosync::compiler::ascii {
   return std::ranges::equal(a, b, [](char x, char y) { return same(x, y); });
 }
 
+// Without the blanks of a line at its start and its end.
+[[nodiscard]] constexpr std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\v\f\r";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
 }  // namespace robosync::compiler::ascii

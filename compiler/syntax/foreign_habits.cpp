@@ -48,12 +48,12 @@ private:
     return change(0, end, {{Kinds::TEST, tokens_[0].span}, {Kinds::STRING, name}});
   }
 
-  // `IF touch LEVEL > 3 DO` outside of a rule; `ON touch LEVEL > 3 DO`, `WENN touch LEVEL > 3:`
+  // `IF touch LEVEL > 3 DO` outside of a rule; `ON touch LEVEL > 3 DO`
   std::optional<Edit> rule_with_if() {
     const auto block = open_block();
     const bool outside = stop_ == begin_ && (!block || is(*block, Kinds::BEHAVIOR));
     const bool foreign =
-        is_any_name(stop_, {"ON", "WHENEVER", "UPON", "ONCE", "WENN", "SOBALD"}) &&
+        is_any_name(stop_, {"ON", "WHENEVER", "UPON", "ONCE"}) &&
         (has(stop_, end_, Kinds::DO) || is(end_ + 1, Kinds::DO) || is(end_ - 1, Kinds::COLON));
     if (!outside || is(stop_ + 1, Kinds::START) || !(is(stop_, Kinds::IF) || foreign))
       return std::nullopt;
@@ -115,7 +115,7 @@ private:
     if (is(next, Kinds::DO)) behind = next + 1;
     const Span all = span(stop_, behind);
     report(Code::E0010, "a rule cannot begin with " + quote(stop_), all)
-        .helps("to act again and again, write `EVERY 1s DO`")
+        .helps("to act again and again, write `EVERY 1s DO`, the commands, and `END`")
         .fix(all, "EVERY 1s DO", Applicability::likely);
     return change(
         stop_, behind - stop_,
@@ -334,7 +334,8 @@ private:
   std::optional<Edit> set_with_sign() {
     if (!begins_with(Kinds::SET) || !is(stop_, Kinds::EQUAL) || stop_ != statement_ + 2)
       return std::nullopt;
-    report(Code::E0001, "`SET` takes `TO` before the value, not `=`", tokens_[stop_].span)
+    report(Code::E0001, "`SET` takes `TO` before the value, not " + quote(stop_),
+           tokens_[stop_].span)
         .helps("write `SET " + std::string(text(statement_ + 1)) + " TO " +
                text(stop_ + 1, statement_end()) + "`")
         .fix(tokens_[stop_].span, "TO");

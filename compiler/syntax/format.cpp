@@ -22,7 +22,6 @@ namespace {
 constexpr std::size_t kIndent = 2;         // columns per level
 constexpr std::size_t kBeforeComment = 2;  // columns, at least
 constexpr std::size_t kWidest = 100;       // columns, of a block that stands on one line
-constexpr std::string_view kWhiteSpace = " \t\v\f\r";
 
 // Takes a space on either side. Minus is not here: it may be a sign.
 bool is_spaced(TokenKind kind) {
@@ -40,12 +39,6 @@ bool is_space_between(TokenKind left, TokenKind right, bool written) {
     return false;
   return written || is_one_of(left, {Kinds::COMMA, Kinds::COLON}) || is_spaced(left) ||
          is_spaced(right) || left == Kinds::CLOSE || is_word_between(left);
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kWhiteSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kWhiteSpace) + 1 - first);
 }
 
 // Counts code points, which take one column each in what programs are written in.
@@ -221,7 +214,7 @@ private:
     const Tokens tokens = tokens_of(begin + text.size());
     const std::size_t code = tokens.empty() ? 0 : tokens.back().span.end - begin;
     const std::string_view comment =
-        trimmed(utf8::without_byte_order_mark(text.substr(std::min(code, text.size()))));
+        ascii::trimmed(utf8::without_byte_order_mark(text.substr(std::min(code, text.size()))));
     if (!comment.empty() && comment.front() != '#' && comment.front() != '%') return false;
     if (tokens.empty())
       lines_.push_back({.level = level_of_comment(blocks_)});

@@ -22,12 +22,22 @@ bool is_misplaced(TokenKind kind) {
   return kind == Kinds::END || kind == Kinds::BEHAVIOR;
 }
 
-void report(const Token& token, const SourceFile& source, Diagnostics& diagnostics) {
+void report(const Token& token, const Token& name, const SourceFile& source,
+            Diagnostics& diagnostics) {
+  const bool named = name.kind == Kinds::NAME;
   diagnostics
       .report(Code::E0010, "`" + std::string(source.text(token.span)) +
                                "` does not belong in the first line of a BEHAVIOR")
       .label(token.span)
-      .helps("write `BEHAVIOR name PRIORITY 50`, then its rules, then `END`");
+      .helps("write `BEHAVIOR " + std::string(named ? source.text(name.span) : "name") +
+             " PRIORITY 50`, then its rules, then `END`");
+}
+
+// Does a rule of the BEHAVIOR follow its head, which ends at `end`?
+bool rule_follows(const Tokens& tokens, std::size_t end) {
+  while (end < tokens.size() && tokens[end].kind == Kinds::NEWLINE)
+    ++end;
+  return end < tokens.size() && (roles_of(tokens[end].kind) & role::item) == 0;
 }
 
 }  // namespace
@@ -41,10 +51,16 @@ void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
     const auto first =
         std::find_if(begin, end, [](const Token& token) { return is_misplaced(token.kind); });
     if (first == end) continue;
-    report(*first, source, diagnostics);
-    tokens.erase(
-        std::remove_if(first, end, [](const Token& token) { return is_misplaced(token.kind); }),
-        end);
+    report(*first, tokens[at + 1], source, diagnostics);
+    if (!rule_follows(tokens, static_cast<std::size_t>(end - tokens.begin()))) {
+      tokens.erase(begin - 1, end);
+      continue;
+    }
+    const bool number_missing = std::prev(first)->kind == Kinds::PRIORITY;
+    if (number_missing) first->kind = Kinds::QUANTITY;
+    tokens.erase(std::remove_if(number_missing ? std::next(first) : first, end,
+                                [](const Token& token) { return is_misplaced(token.kind); }),
+                 end);
   }
 }
 
@@ -132,6 +148,14 @@ void fill_empty_block(Tokens& tokens, std::size_t line_end) {
 }
 
 }  // namespace
+
+void mend_robot_names(Tokens& tokens, const SourceFile& source, const Vocabulary& robot) {
+  for (const std::string_view name : robot.reserved_names())
+    for (std::size_t at = 1; at < tokens.size() && !has_capital(name); ++at)
+      if (is_keyword(tokens[at].kind) && !starts_line(tokens, at) &&
+          source.text(tokens[at].span) == name)
+        tokens[at].kind = Kinds::NAME;
+}
 
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
   for (std::size_t at = 0; at + 2 < tokens.size(); ++at) {

@@ -5,8 +5,16 @@
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
 #include "compiler/syntax/token.hpp"
+#include "compiler/syntax/vocabulary.hpp"
 
 namespace robosync::compiler {
+
+// `WENN touch LEVEL < 3 DANN`: reports words of other languages once, and reads them as those of RSL. `robot` may be null.
+void mend_foreign_words(Tokens& tokens, const SourceFile& source, const Vocabulary* robot,
+                        Diagnostics& diagnostics);
+
+// Closes blocks that end only by their indentation, and rules that begin with IF.
+void mend_indented_blocks(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
 // Reports such words and removes them from the tokens.
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
@@ -14,6 +22,9 @@ void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnosti
 // `REMEMBER end = 0`, `margin BELOW 5` in a CHECK: reports a word of RSL that is declared as a name. The same spelling, in lower
 // case, counts as that name everywhere, so that the mistake is reported once.
 void mend_names(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
+
+// `"name": "when"` in robot.json, which is reported there: reads such a word as that name, but for the first of a line.
+void mend_robot_names(Tokens& tokens, const SourceFile& source, const Vocabulary& robot);
 
 // Reports rows of a CHECK, a MOTION or a TEST whose first line is missing, and inserts one.
 void mend_lost_heads(Tokens& tokens, Diagnostics& diagnostics);

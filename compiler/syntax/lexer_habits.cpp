@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -363,6 +364,28 @@ void LexerState::whole_division() {
   token(Kinds::SLASH);
 }
 
+// `x := 4`, `SET x := 4`: the grammar stops there, and foreign_habits.cpp explains the whole line.
+void LexerState::assignment() {
+  const std::size_t first = first_of_statement();
+  const std::size_t words = tokens_.size() - first;
+  std::size_t before = first;
+  while (before > 0 && tokens_[before - 1].kind == Kinds::NEWLINE)
+    --before;
+  const unsigned roles = before > 0 ? roles_of(tokens_[before - 1].kind) : 0U;
+  const bool goes_on = (roles & role::before) != 0 && (roles & role::begins) == 0;
+  const bool set = words == 2 && tokens_[first].kind == Kinds::SET;
+  if ((words == 1 || set) && !goes_on && tokens_.back().kind == Kinds::NAME)
+    token(Kinds::EQUAL);
+  else
+    instead(Kinds::EQUAL, "=");
+}
+
+// Once: whoever writes one writes many, or braces.
+void LexerState::semicolon() {
+  if (!std::exchange(has_semicolon_, true) && !has_brace_)
+    left_out("a statement ends with its line");
+}
+
 // ---- braces and comments
 
 // A brace instead of DO, or after it, as in other languages. The line that opens the block is before the brace, possibly
@@ -385,46 +408,41 @@ LexerState::Brace LexerState::brace_opens_a_block() {
   return Brace::for_do;
 }
 
-// The first word of the line that opens the block, which may be the line above the brace.
-std::string_view LexerState::word_before_brace() const {
+// The line that opens the block; it may be above the brace.
+std::string_view LexerState::line_before_brace() const {
   const std::string_view before = text_.substr(0, text_.find_last_not_of(" \t\r\n{", start_) + 1);
   std::string_view line = before.substr(before.find_last_of("\r\n") + 1);
   line.remove_prefix(std::min(line.find_first_not_of(" \t}"), line.size()));
-  return line.substr(0, line.find_first_of(" \t("));
+  return line;
 }
 
 namespace {
 
-bool is_among(std::string_view word, std::span<const std::string_view> words) {
-  return std::ranges::any_of(words, [word](auto one) { return ascii::same(word, one); });
-}
-
-struct BraceLine {
-  std::string_view first, in_rsl;
-};
-constexpr std::array kBraceLines = {BraceLine{"IF", "IF touch LEVEL > 3 DO"},
-                                    BraceLine{"ELSE", "ELSE"},
-                                    BraceLine{"WHILE", "WHILE touch LEVEL > 3 DO"},
-                                    BraceLine{"DEFINE", "DEFINE greet"},
-                                    BraceLine{"FOR", "REPEAT 3 TIMES"},
-                                    BraceLine{"REPEAT", "REPEAT 3 TIMES"}};
-
-std::string_view line_with(std::string_view first) {
-  const auto* const line = std::ranges::find_if(
-      kBraceLines, [first](const BraceLine& one) { return ascii::same(one.first, first); });
-  return line == kBraceLines.end() ? "WHEN touch LEVEL > 3 DO" : line->in_rsl;
+// The line as RSL writes it.
+std::string line_in_rsl(std::string_view line, const Keyword* keyword) {
+  if (keyword != nullptr && keyword->kind == Kinds::FOR) return "REPEAT 3 TIMES";
+  if (keyword == nullptr || (keyword->kind != Kinds::ELSE && (keyword->roles & role::opens) == 0))
+    return "WHEN touch LEVEL > 3 DO";
+  const bool goes_on = keyword->kind == Kinds::ELSE && line.size() > keyword->spelling.size();
+  const bool asks_more = goes_on || is_one_of(keyword->kind, {Kinds::EVERY, Kinds::AT}) ||
+                         (asks(keyword->kind) && keyword->kind != Kinds::REPEAT);
+  return std::string(line) + (asks_more && !line.ends_with("DO") ? " DO" : "");
 }
 
 }  // namespace
 
 // In `function wave() {` the word is the mistake.
 void LexerState::opening_brace() {
-  const std::string_view first = word_before_brace();
-  const bool reported = has_brace_ || is_among(first, kForeignDefines);
+  const std::string_view line = line_before_brace();
+  const std::string_view first = line.substr(0, word_length(line));
+  const bool reported = has_brace_ || std::ranges::any_of(kForeignDefines, [first](auto one) {
+                          return ascii::same(first, one);
+                        });
   if (!reported)
     report(Code::E0002, "RSL has no braces: a block ends with `END`")
         .label(here())
-        .helps(fmt::format("write `{}`, then the commands, then `END`", line_with(first)));
+        .helps("write `" + line_in_rsl(line, find_keyword(first)) +
+               "`, then the commands, then `END`");
   has_brace_ = has_brace_ || !reported;
   braces_.push_back(brace_opens_a_block());
 }

@@ -45,7 +45,9 @@ private:
   void comment();
   void instead(TokenKind meant, std::string_view spelling);
   void left_out(std::string_view why);
-  std::string_view word_before_brace() const;
+  std::string_view line_before_brace() const;
+  void assignment();
+  void semicolon();
   void opening_brace();
   void closing_brace();
   void foreign_comment();
@@ -100,7 +102,7 @@ private:
   std::vector<Token> tokens_;
   std::size_t start_ = 0;
   std::size_t cursor_ = 0;
-  bool has_brace_ = false;                                  // reported once
+  bool has_brace_ = false, has_semicolon_ = false;          // reported once
   std::vector<Brace> braces_;                               // the open ones
   std::size_t strange_end_ = static_cast<std::size_t>(-1);  // where the last strange bytes ended
 };

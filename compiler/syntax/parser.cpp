@@ -11,6 +11,7 @@
 #include "compiler/diagnostics/plain_text.hpp"
 #include "compiler/syntax/builder.hpp"
 #include "compiler/syntax/examples.hpp"
+#include "compiler/syntax/foreign_text.hpp"
 #include "compiler/syntax/heads.hpp"
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
@@ -121,9 +122,12 @@ public:
       return {};
     }
     if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
-    tokens_ = lex(source_, file_, diagnostics_);
+    tokens_ = lex_but_foreign_text(source_, file_, robot_, diagnostics_);
     find_strange_lines();
+    mend_foreign_words(tokens_, source_, robot_, diagnostics_);
+    mend_indented_blocks(tokens_, source_, diagnostics_);
     mend_heads(tokens_, source_, diagnostics_);
+    if (robot_ != nullptr) mend_robot_names(tokens_, source_, *robot_);
     mend_names(tokens_, source_, diagnostics_);
     mend_lost_heads(tokens_, diagnostics_);
     const std::vector<Region> regions = split_into_regions(tokens_, source_);

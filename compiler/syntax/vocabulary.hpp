@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace robosync::compiler {
 
@@ -24,6 +25,8 @@ public:
   Vocabulary& operator=(const Vocabulary&) = delete;
   virtual ~Vocabulary() = default;
 
+  // The names that are words of RSL: mistakes of robot.json.
+  [[nodiscard]] virtual std::vector<std::string_view> reserved_names() const = 0;
   // The part of the sensor, actuator or group of this name; without a name, of the first that has such a part. Empty
   // when there is none.
   [[nodiscard]] virtual std::string part(Part part, std::string_view name) const = 0;

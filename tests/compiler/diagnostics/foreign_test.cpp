@@ -1,0 +1,138 @@
+// Text in the form of another language: one error, which says how RSL writes it.
+#include <catch2/catch.hpp>
+
+#include "tests/compiler/compiled.hpp"
+
+using namespace robosync::compiler;
+using namespace robosync::compiler::testing;
+using Catch::Contains;
+
+namespace {
+
+struct Case {
+  std::string program, says;
+};
+
+std::string rule(const std::string& line) {
+  return "WHEN touch LEVEL < 3 DO\n  " + line + "\nEND\n";
+}
+
+const std::string kForeign = "another programming language", kAgain = "EVERY 1s DO",
+                  kOnce = "AT START DO", kWhen = "WHEN touch LEVEL < 3 DO", kWait = "WAIT 500ms";
+
+// Each of them as a pupil would bring it along, from top to bottom.
+const Case kCases[] = {
+    // C++, as for Arduino
+    {"void setup() {\n  pinMode(13, OUTPUT);\n}\n\nvoid loop() {\n  digitalWrite(13, HIGH);\n"
+     "  delay(500);\n}\n",
+     kOnce},
+    {"Servo arm;\nint pos = 0;\nvoid loop()\n{\n  if (analogRead(A0) > 500) {\n    arm.write(90);\n"
+     "  } else {\n    arm.write(0);\n  }\n}\n",
+     kAgain},
+    {"int main() {\n  printf(\"hi\");\n  return 0;\n}\n", "LOG \"hello\""},
+    {"for (int i = 0; i < 3; i++) {\n  SHOW face happy;\n}\n", "REPEAT 3 TIMES"},
+    {"digitalWrite(13, HIGH);\n", "verb and an actuator"},
+    {rule("delay(500);"), kWait},
+    {rule("left_arm.write(90)"), "MOVE left_arm TO 60deg"},
+    {rule("if (touch > 3) {\n    digitalWrite(13, HIGH);\n  }"), kForeign},
+    {"while (true) {\n  delay(100);\n}\n", kAgain},
+    // Python
+    {"def react():\n    servo.write(90)\n    print(\"hi\")\n\nreact()\n", "DEFINE react"},
+    {"from machine import Pin\nimport time\n\nwhile True:\n    if touch > 3:\n        "
+     "arm.move(90)\n"
+     "    else:\n        arm.move(0)\n    time.sleep(1)\n",
+     "RSL needs no imports"},
+    {"for i in range(3):\n    print(\"hi\")\n", "REPEAT 3 TIMES"},
+    {rule("for i in range(3):\n    SHOW face happy"), "REPEAT 3 TIMES"},
+    {"class Robot:\n    def react(self):\n        return self.x\n", "DEFINE Robot"},
+    {"WHEN touch LEVEL < 3:\n    SHOW face happy\nELSE:\n    SHOW face sad\n", kWhen},
+    {"WHEN touch LEVEL < 3 AND\n    touch LEVEL > 1:\n    SHOW face happy\n", "touch LEVEL > 1 DO"},
+    {rule("IF touch LEVEL > 1:\n    IF touch LEVEL > 2:\n      SHOW face happy"),
+     "IF touch LEVEL > 1 DO"},
+    {rule("repeat 3:\n    SHOW face happy"), "repeat 3 TIMES"},
+    {"if touch LEVEL < 3:\n    SHOW face happy\nelif touch LEVEL < 5:\n    SHOW face sad\nelse:\n"
+     "    LOG \"x\"\n",
+     kWhen},
+    {"if touch LEVEL < 3:\n    SHOW face happy\nif touch LEVEL > 5:\n    SHOW face sad\n", kWhen},
+    // JavaScript, Lua, BASIC
+    {"function react() {\n  console.log(\"hi\");\n}\nsetInterval(react, 100);\n", "DEFINE react"},
+    {"input.onButtonPressed(Button.A, function () {\n    basic.pause(100)\n})\n", kWait},
+    {"function react()\n  if touch > 3 then\n    print(\"hi\")\n  end\nend\n", "DEFINE react"},
+    {"switch (x) {\n  case 1: SHOW face happy; break;\n}\n", kForeign},
+    {"IF touch LEVEL < 3 THEN\n  SHOW face happy\nEND\n", kWhen},
+    {"IF touch LEVEL < 3 THEN\nSHOW face happy\nEND IF\n", kWhen},
+    {"IF touch LEVEL < 3 THEN SHOW face happy\n", kWhen},
+    {"IF touch LEVEL < 3\n  SHOW face happy\nEND\n", kWhen},
+    // Scratch
+    {"when green flag clicked\nforever\n  move 10 steps\n  if <touching edge> then\n    turn 15\n"
+     "  end\nend\n",
+     kOnce},
+    {"when button A pressed\n  show face happy\nend\n", "WHEN touch LEVEL > 5 DO"},
+    {"on button pressed\n  SHOW face happy\n", "WHEN touch LEVEL > 5 DO"},
+    {"forever\n  SHOW face happy\n", "the commands, and `END`"},
+    // assignments and signs
+    {"REMEMBER x = 0\n" + rule("x := 4"), "SET x TO 4"},
+    {"REMEMBER x = 0\n" + rule("SET x := 4"), "SET x TO 4"},
+    {"x := 4\n", "REMEMBER x = 4"},
+    {"let x = 4;\n" + rule("SHOW face happy;"), "RSL does not use `;`"},
+    {"WHEN touch LEVEL < 3 {\n  SHOW face happy;\n}\n", "RSL has no braces"},
+    // languages that people speak
+    {"WENN touch LEVEL < 3 UND touch LEVEL > 1 DANN\n  SHOW face happy\nSONST\n  SHOW face sad\n"
+     "ENDE\n",
+     "`WHEN` instead of `WENN`, `AND` instead of `UND`, `DO` instead of `DANN`"},
+    {rule("WENN touch LEVEL > 1 DANN\n    SHOW face happy\n  ENDE"), "`IF` instead of `WENN`"},
+    {rule("WIEDERHOLE 3 MAL\n    SHOW face happy\n  ENDE"), "`TIMES` instead of `MAL`"},
+    {"QUAND touch LEVEL < 3 FAIRE\n  SHOW face happy\nFIN\n", "`END` instead of `FIN`"},
+    {"CUANDO touch LEVEL < 3 HACER\n  SHOW face happy\nFIN\n", "`WHEN` instead of `CUANDO`"},
+    // a line of RSL with a part of another
+    {"BEHAVIOR greet PRIORITY END\n", "BEHAVIOR greet PRIORITY 50"},
+    {"BEHAVIOR greet PRIORITY END\n" + rule("SHOW face happy") + "END\n",
+     "BEHAVIOR greet PRIORITY 50"},
+};
+
+}  // namespace
+
+TEST_CASE("text of another language gives one error, which says how RSL writes it") {
+  for (const Case& one : kCases) {
+    const Result result = compile_text(one.program, common_robot());
+    const std::string said = messages(result);
+    INFO(one.program << '\n' << said);
+    CHECK(result.diagnostics.errors() == 1);
+    CHECK_THAT(said, Contains(one.says));
+  }
+}
+
+TEST_CASE("a mistake beside the text of another language is reported, too") {
+  const Result result = compile_text(
+      "void loop() {\n  delay(500);\n}\n" + rule("SHOW face happy OR"), common_robot());
+  CHECK(result.diagnostics.errors() == 2);
+}
+
+TEST_CASE("other languages' text in several places is one error with all its places") {
+  const Result result = compile_text(rule("delay(500);") + rule("delay(9);"), common_robot());
+  REQUIRE(result.diagnostics.errors() == 1);
+  CHECK(result.diagnostics.all().front().labels.size() == 2);
+}
+
+TEST_CASE("lines of RSL are not taken for those of another language") {
+  for (const std::string& program : {
+           "DEFINE fin\n  SHOW face happy\nEND\n" + rule("fin"),
+           "REMEMBER mal = 0\n" + rule("SET mal TO 1"),
+           std::string("LET pressed = 3\nWHEN touch LEVEL < pressed\nDO\n  SHOW face happy\nEND\n"),
+       }) {
+    const Result result = compile_text(program, common_robot());
+    INFO(program << '\n' << messages(result));
+    CHECK(result.diagnostics.errors() == 0);
+  }
+}
+
+TEST_CASE("a name in robot.json that is a word of RSL is reported there only") {
+  const std::string robot =
+      R"({"sensors": [{"name": "when", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}}}],
+ "actuators": [{"name": "left_arm", "type": "PWM", "pin": 10, "device": "servo"}]})";
+  const Result result = compile_text(
+      "WHEN when LEVEL > 3 DO\n  MOVE left_arm UP\nEND\nWHEN when LEVEL < 2 DO\n  LOG \"a\"\nEND\n",
+      robot);
+  CHECK(result.diagnostics.errors() == 1);
+  CHECK_THAT(messages(result), Contains("E0102"));
+}
