@@ -277,10 +277,13 @@ private:
   // In the order of the text.
   [[nodiscard]] std::vector<Said> hints(const std::vector<Span>& found) const {
     std::vector<Said> all;
-    for (const TextLine& line : lines_)
-      if (std::ranges::any_of(
-              found, [&line](Span one) { return one.begin <= line.begin && line.begin < one.end; }))
-        add_hints(line, all);
+    auto next = found.begin();
+    for (const TextLine& line : lines_) {
+      while (next != found.end() && next->end <= line.begin)
+        ++next;
+      if (next == found.end()) break;
+      if (next->begin <= line.begin) add_hints(line, all);
+    }
     constexpr std::size_t most = 4;
     if (all.size() > most) all.resize(most);
     return all;

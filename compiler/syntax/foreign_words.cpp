@@ -1,6 +1,7 @@
 // See heads.hpp. The words are in foreign_words.def.
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -37,14 +38,11 @@ public:
   ForeignWords(Tokens& tokens, const SourceFile& source, const Vocabulary* robot)
       : tokens_(tokens), source_(source), robot_(robot), walk_(tokens) {}
 
-  // Quick where there are none: commands are indented, and a name follows their verb.
-  [[nodiscard]] bool any() const {
+  // Quick where there are none.
+  [[nodiscard]] bool any() {
     for (std::size_t at = 0; at + 1 < tokens_.size(); ++at) {
       if (tokens_[at].kind != Kinds::NAME || !starts_line(tokens_, at)) continue;
-      const bool asks = at + 3 < tokens_.size() && is_relation(tokens_[at + 3].kind);
-      const bool command = is_one_of(tokens_[at + 1].kind, {Kinds::NAME, Kinds::STRING}) && !asks &&
-                           indentation(tokens_[at], source_) > 0;
-      if (command) continue;
+      if (may_be_command(at) || may_be_call_or_band(at)) continue;
       const Translation* const meant = meant_at(at);
       // A slip of a word of RSL, such as ENDE, is no sign of another language.
       if (meant != nullptr && !is_near(text(at), meant->word)) return true;
@@ -66,25 +64,45 @@ private:
     return source_.text(tokens_[at].span);
   }
 
+  // Commands are indented, and a name follows their verb.
+  [[nodiscard]] bool may_be_command(std::size_t at) const {
+    const bool asks = at + 3 < tokens_.size() && is_relation(tokens_[at + 3].kind);
+    return is_one_of(tokens_[at + 1].kind, {Kinds::NAME, Kinds::STRING}) && !asks &&
+           indentation(tokens_[at], source_) > 0;
+  }
+  // Of a DEFINE, which may be another module's; of a CHECK.
+  [[nodiscard]] bool may_be_call_or_band(std::size_t at) const {
+    return is_one_of(tokens_[at + 1].kind, {Kinds::NEWLINE, Kinds::WITH, Kinds::BELOW, Kinds::ABOVE,
+                                            Kinds::BETWEEN, Kinds::OTHERWISE});
+  }
+
   // Null when it is a name of the program or of the robot.
-  [[nodiscard]] const Translation* meant_at(std::size_t at) const {
+  [[nodiscard]] const Translation* meant_at(std::size_t at) {
     if (tokens_[at].kind != Kinds::NAME) return nullptr;
     const Translation* const meant = translation(text(at));
     return meant == nullptr || is_name(text(at)) ? nullptr : meant;
   }
-  [[nodiscard]] bool is_name(std::string_view word) const {
+  [[nodiscard]] bool is_name(std::string_view word) {
     using Part = Vocabulary::Part;
     if (robot_ != nullptr && (!robot_->part(Part::condition, word).empty() ||
                               !robot_->part(Part::actuator, word).empty()))
       return true;
-    constexpr std::size_t most = 4096;  // tokens: the text may come from outside
-    for (std::size_t at = 1; at < std::min(tokens_.size(), most); ++at) {
+    if (declared_.empty()) note_declared();
+    return declared_.contains(lower(word));
+  }
+
+  void note_declared() {
+    declared_.insert("");  // not to be looked for again
+    for (std::size_t at = 1; at < tokens_.size(); ++at) {
       const TokenKind kind = tokens_[at - 1].kind;
-      if ((kind == Kinds::REMEMBER || (roles_of(kind) & role::item) != 0) &&
-          ascii::same(text(at), word))
-        return true;
+      if (kind == Kinds::REMEMBER || (roles_of(kind) & role::item) != 0)
+        declared_.insert(lower(text(at)));
     }
-    return false;
+  }
+  static std::string lower(std::string_view word) {
+    std::string text(word);
+    std::ranges::transform(text, text.begin(), ascii::lower);
+    return text;
   }
 
   void translate(std::size_t at, const Translation& meant, Diagnostic& message) {
@@ -107,6 +125,7 @@ private:
   const SourceFile& source_;
   const Vocabulary* robot_;
   BlockWalk walk_;
+  std::set<std::string> declared_;
   std::string help_;
   std::size_t shown_ = 0;
 };

@@ -118,12 +118,20 @@ TEST_CASE("lines of RSL are not taken for those of another language") {
   for (const std::string& program : {
            "DEFINE fin\n  SHOW face happy\nEND\n" + rule("fin"),
            "REMEMBER mal = 0\n" + rule("SET mal TO 1"),
+           std::string("CHECK size OF touch LEVEL\n  fin BELOW 3\n  alle OTHERWISE\nEND\n"
+                       "WHEN size IS fin DO SHOW face happy END\n"),
+           std::string("WHEN\n  mal > 3\nDO\n  SHOW face sad\nEND\nREMEMBER mal = 0\n"),
            std::string("LET pressed = 3\nWHEN touch LEVEL < pressed\nDO\n  SHOW face happy\nEND\n"),
        }) {
     const Result result = compile_text(program, common_robot());
     INFO(program << '\n' << messages(result));
     CHECK(result.diagnostics.errors() == 0);
   }
+}
+
+TEST_CASE("a call of what another module may define is no word of another language") {
+  for (const char* const call : {"warte", "fin WITH 3"})
+    CHECK_THAT(messages(compile_text(rule(call), common_robot())), !Contains("English"));
 }
 
 TEST_CASE("a name in robot.json that is a word of RSL is reported there only") {
