@@ -120,13 +120,14 @@ std::size_t number_of_edits() {
   return wanted == nullptr ? 1000 : std::strtoul(wanted, nullptr, 10);
 }
 
-const std::u16string kProgram = u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n";
+const std::u16string kEditedProgram =
+    u"WHEN touch LEVEL > 3\nDO\n  MOVE arms TO 30deg SLOWLY\nEND\n";
 
 class Typist {
 public:
   Typist(unsigned seed, std::string name, std::u16string text, const Pieces& pieces)
       : random_(seed), name_(std::move(name)), pieces_(pieces), text_(std::move(text)) {
-    editor_.open("robot.rsl", Text(kProgram).utf8());
+    editor_.open("robot.rsl", Text(kEditedProgram).utf8());
     if (name_ != "robot.rsl") editor_.open(name_, text_.utf8());
   }
 
@@ -210,7 +211,7 @@ void type_and_ask(Typist typist, std::size_t often) {
 }  // namespace
 
 TEST_CASE("after any changes the text is that of the editor, and every question has an answer") {
-  type_and_ask(Typist(17, "robot.rsl", kProgram, kPieces), 16);
+  type_and_ask(Typist(17, "robot.rsl", kEditedProgram, kPieces), 16);
 }
 
 TEST_CASE("after any changes of a robot.json the text is that of the editor, too") {
