@@ -34,6 +34,7 @@ WHEN wheel DISTANCE > 10cm DO LOG "far" END
 WHEN wheel DISTANCE < -1cm DO LOG "back" END
 """
 KICK = "watchdog_kick()"  # every 10 ms, by SAFETY
+TAKE, STEPS_OF_TAKE = "take_edges", 80
 KICKS, SAMPLE_MS, KICK_MS = 30, 20, 10
 SLACK = 4  # interrupts: the one that ends the counting, and one of each sample that comes while it is stopped
 SWINGS = 5000
@@ -116,6 +117,19 @@ class OfInterrupts(OfEdges):
         self.await_distance(reader, -4)
         self.await_event(reader, event="log", text="back")
         self.assert_in_time(reader)
+
+    def test_an_edge_while_a_sample_is_taken_counts(self):
+        """QEMU forgets an edge of a masked line, and lets the wire change where the processor writes to a register."""
+        self.rest()
+        reader = self.begin()
+        with self.debugger() as debugger:
+            for steps in range(STEPS_OF_TAKE):
+                debugger.run_to(place_of(TAKE), lambda: None)
+                for _ in range(steps):
+                    debugger.step()
+                self.wires.set(A, steps % 2 == 0)
+                self.turn(debugger, ((B, steps % 2 == 0),))
+        self.await_distance(reader, STEPS_OF_TAKE)
 
     def assert_in_time(self, reader):
         reader.stop()  # it has the line
