@@ -110,6 +110,12 @@ Diagnostic& Diagnostic::helps(std::string text) {
   return *this;
 }
 
+Diagnostic& Diagnostic::appears_in_more(std::size_t places) {
+  if (places == 0) return *this;
+  return helps(places == 1 ? "it appears in one more place"
+                           : "it appears in " + std::to_string(places) + " more places");
+}
+
 Diagnostic& Diagnostic::fix(Span span, std::string replacement, Applicability applicability) {
   fixes.push_back({span, std::move(replacement), applicability});
   return *this;
@@ -258,8 +264,7 @@ void Diagnostics::merge_repeated() {
     if (++one.repeated < most) one.label(anchor(diagnostic), "and here", false);
   }
   for (Diagnostic& one : merged)
-    if (one.repeated >= most)
-      one.helps("it appears in " + std::to_string(one.repeated - most + 1) + " more places");
+    one.appears_in_more(one.repeated + 1 - std::min(one.repeated + 1, most));
   all_ = std::move(merged);
 }
 

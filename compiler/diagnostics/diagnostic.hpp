@@ -65,6 +65,8 @@ struct Diagnostic {
   // Chainable builders.
   Diagnostic& label(Span span, std::string text = {}, bool primary = true);
   Diagnostic& helps(std::string text);
+  // "it appears in 3 more places", if that is more than none.
+  Diagnostic& appears_in_more(std::size_t places);
   Diagnostic& fix(Span span, std::string replacement,
                   Applicability applicability = Applicability::certain);
 };

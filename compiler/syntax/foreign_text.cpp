@@ -110,8 +110,10 @@ public:
     const Examples examples(tokens_, source_, robot_);
     Diagnostic& message = diagnostics.report(
         Code::E0001, "this is written in another programming language, not in RSL");
-    for (std::size_t at = 0; at < std::min(found.size(), most); ++at)
+    const std::size_t shown = std::min(found.size(), most);
+    for (std::size_t at = 0; at < shown; ++at)
       message.label(first_line(found[at]), at == 0 ? "" : "and here", at == 0);
+    message.appears_in_more(found.size() - shown);
     for (const Said& said : hints(found)) {
       const Hint& hint = kHints[said.hint];
       const std::string name = hint.gap == Gap::condition ? examples.condition({})

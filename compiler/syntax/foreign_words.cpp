@@ -1,4 +1,6 @@
-// See heads.hpp. The words are in foreign_words.def.
+// See foreign_words.hpp.
+#include "compiler/syntax/foreign_words.hpp"
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -10,7 +12,6 @@
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/blocks.hpp"
-#include "compiler/syntax/heads.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/word_list.hpp"
 

@@ -9,13 +9,6 @@
 
 namespace robosync::compiler {
 
-// `WENN touch LEVEL < 3 DANN`: reports words of other languages once, and reads them as those of RSL. `robot` may be null.
-void mend_foreign_words(Tokens& tokens, const SourceFile& source, const Vocabulary* robot,
-                        Diagnostics& diagnostics);
-
-// Closes blocks that end only by their indentation, and rules that begin with IF.
-void mend_indented_blocks(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
-
 // Reports such words and removes them from the tokens.
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 

@@ -1,12 +1,12 @@
-// See heads.hpp. A line that ends with a colon begins a block that continues as far as it is indented, in other languages. An IF
-// outside of all blocks, without a DO, is a rule of such a language.
+// See indented_blocks.hpp.
+#include "compiler/syntax/indented_blocks.hpp"
+
 #include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "compiler/syntax/blocks.hpp"
-#include "compiler/syntax/heads.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/word_list.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -380,10 +379,16 @@ void LexerState::assignment() {
     instead(Kinds::EQUAL, "=");
 }
 
-// Once: whoever writes one writes many, or braces.
-void LexerState::semicolon() {
-  if (!std::exchange(has_semicolon_, true) && !has_brace_)
-    left_out("a statement ends with its line");
+// Whoever writes one writes many. Beside braces, the braces are the mistake.
+void LexerState::report_semicolons() {
+  constexpr std::size_t most = 4;  // places shown
+  if (semicolons_.empty() || has_brace_) return;
+  Diagnostic& message = report(Code::E0002, "RSL does not use `;`");
+  message.label(semicolons_.front(), "a statement ends with its line");
+  const std::size_t shown = std::min(semicolons_.size(), most);
+  for (std::size_t at = 1; at < shown; ++at)
+    message.label(semicolons_[at], "and here", false);
+  message.appears_in_more(semicolons_.size() - shown);
 }
 
 // ---- braces and comments

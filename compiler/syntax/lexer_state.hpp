@@ -27,7 +27,11 @@ public:
 
   // Reads one token, blank or comment; false at the end. In grammar/rsl.re.
   bool step();
-  std::vector<Token> take() { return std::move(tokens_); }
+  // At the end.
+  std::vector<Token> take() {
+    report_semicolons();
+    return std::move(tokens_);
+  }
 
 private:
   // Each handles the bytes from start_ to cursor_, and may move cursor_ back.
@@ -47,7 +51,8 @@ private:
   void left_out(std::string_view why);
   std::string_view line_before_brace() const;
   void assignment();
-  void semicolon();
+  void semicolon() { semicolons_.push_back(here()); }
+  void report_semicolons();
   void opening_brace();
   void closing_brace();
   void foreign_comment();
@@ -102,7 +107,8 @@ private:
   std::vector<Token> tokens_;
   std::size_t start_ = 0;
   std::size_t cursor_ = 0;
-  bool has_brace_ = false, has_semicolon_ = false;          // reported once
+  bool has_brace_ = false;                                  // reported once
+  std::vector<Span> semicolons_;                            // reported together, at the end
   std::vector<Brace> braces_;                               // the open ones
   std::size_t strange_end_ = static_cast<std::size_t>(-1);  // where the last strange bytes ended
 };

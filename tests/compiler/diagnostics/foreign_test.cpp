@@ -114,6 +114,15 @@ TEST_CASE("other languages' text in several places is one error with all its pla
   CHECK(result.diagnostics.all().front().labels.size() == 2);
 }
 
+TEST_CASE("semicolons are one error with their places") {
+  const std::string line = "SHOW face happy;\n";
+  const std::string six = line + line + line + line + line + "SHOW face happy;";
+  const Result result = compile_text(rule(six), common_robot());
+  REQUIRE(result.diagnostics.errors() == 1);
+  CHECK(result.diagnostics.all().front().labels.size() == 4);
+  CHECK_THAT(messages(result), Contains("it appears in 2 more places"));
+}
+
 TEST_CASE("lines of RSL are not taken for those of another language") {
   for (const std::string& program : {
            "DEFINE fin\n  SHOW face happy\nEND\n" + rule("fin"),

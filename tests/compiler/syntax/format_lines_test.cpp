@@ -244,22 +244,9 @@ TEST_CASE("no two statements share a line, however a program is laid out") {
 
 TEST_CASE("no two statements share a line of a program that lacks a word, either") {
   std::mt19937 random(4);
-  std::size_t number = 0;
-  for (const fs::path& path : programs()) {
-    SourceMap sources;
-    Diagnostics ignored;
-    const std::string text = read_file(path);
-    const FileId file = sources.add("robot.rsl", text);
-    for (const Token& token : lex(sources.file(file), file, ignored)) {
-      if (token.span.begin == token.span.end || !robosync::test::in_share(number++)) continue;
-      if (random() % 3 != 0) continue;
-      std::string other = text;
-      other.erase(token.span.begin, token.span.end - token.span.begin);
-      if (styled(other).empty()) continue;
-      INFO(path);
-      checked(Relayer(other, random).relaid());
-    }
-  }
+  each_without_a_word([&](const std::string& other) {
+    if (random() % 3 == 0 && !styled(other).empty()) checked(Relayer(other, random).relaid());
+  });
 }
 
 TEST_CASE("a program means the same, however it is laid out") {

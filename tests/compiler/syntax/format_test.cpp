@@ -146,24 +146,14 @@ TEST_CASE("however a program is spaced, it is formatted to the same") {
 
 TEST_CASE("programs that lack a word are formatted, if they are programs") {
   int formatted_programs = 0;
-  std::size_t number = 0;
-  for (const fs::path& path : programs()) {
-    SourceMap sources;
-    Diagnostics ignored;
-    const std::string text = read_file(path);
-    const FileId file = sources.add("robot.rsl", text);
-    for (const Token& token : lex(sources.file(file), file, ignored)) {
-      if (token.span.begin == token.span.end || !robosync::test::in_share(number++)) continue;
-      std::string other = text;
-      other.erase(token.span.begin, token.span.end - token.span.begin);
-      const std::string once = styled(other);
-      if (once.empty()) continue;
-      ++formatted_programs;
-      INFO(other);
-      REQUIRE(once != "changed");
-      REQUIRE(styled(once) == once);
-    }
-  }
+  each_without_a_word([&](const std::string& other) {
+    const std::string once = styled(other);
+    if (once.empty()) return;
+    ++formatted_programs;
+    INFO(other);
+    REQUIRE(once != "changed");
+    REQUIRE(styled(once) == once);
+  });
   CHECK(formatted_programs > robosync::test::share_of(500));
 }
 
