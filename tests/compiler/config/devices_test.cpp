@@ -109,6 +109,25 @@ TEST_CASE("every descriptor is read without a word") {
   }
 }
 
+TEST_CASE("what a device lacks is in what an editor says of its wiring") {
+  constexpr std::string_view needs = " needs the key ";
+  unsigned found = 0;
+  for (const DeviceText& text : device_texts()) {
+    const nlohmann::json part = {{"name", "x"}, {"type", text.type}, {"device", text.name}};
+    const nlohmann::json robot = {{text.is_sensor ? "sensors" : "actuators", {part}}};
+    const std::string wiring = wiring_of(*find_device(text.name, text.is_sensor));
+    const Result result = compile_text("", robot.dump());
+    for (const Diagnostic& diagnostic : result.diagnostics.all()) {
+      const std::size_t at = diagnostic.message.find(needs);
+      if (at == std::string::npos) continue;
+      INFO(diagnostic.message << "; " << wiring);
+      CHECK(wiring.find(diagnostic.message.substr(at + needs.size())) != std::string::npos);
+      ++found;
+    }
+  }
+  CHECK(found > 20);
+}
+
 TEST_CASE("a descriptor's mistakes are found") {
   const auto mistakes = [](std::string_view json) {
     Diagnostics diagnostics;

@@ -40,6 +40,7 @@ bool Response::comes_too_soon(Millis now) {
   if (now >= waits_since_ + kLeastPause) return false;
   pause_ = Pause::time;
   until_ = waits_since_ + kLeastPause;
+  came_too_soon_ = true;
   return true;
 }
 
@@ -97,6 +98,7 @@ void Response::leave_block() {
 
 void Response::pause(Pause why, Number duration) {
   pause_ = why;
+  came_too_soon_ = false;
   paused_at_ = around_->now;
   waits_since_ = around_->now;
   until_.reset();

@@ -53,6 +53,8 @@ public:
 
   [[nodiscard]] bool ended() const { return places_.empty(); }
   [[nodiscard]] bool waits() const { return pause_ != Pause::none; }
+  // It is in a WAIT: then its rule may choose the other side at once.
+  [[nodiscard]] bool waits_for_time() const { return pause_ == Pause::time && !came_too_soon_; }
   // When a WAIT is over, or a THEN at the earliest. Nothing of other pauses: those are looked at in every step.
   [[nodiscard]] std::optional<Millis> wait_ends() const;
   // Is what it waits for there? Notes it if it comes too soon.
@@ -105,6 +107,7 @@ private:
   const compiler::Expression* condition_ = nullptr;
   const compiler::ir::Follow* follow_ = nullptr;
   bool follows_on_ = false;
+  bool came_too_soon_ = false;  // what it waits until
 
   // While it runs.
   const Surroundings* around_ = nullptr;

@@ -35,7 +35,8 @@ void Interpreter::look_at(std::size_t r, std::vector<Claim>& claims) {
 std::optional<bool> Interpreter::wish(std::size_t r) const {
   const Rule& rule = rules_[r];
   // "20 ms after it began", or "after the interruption at the earliest".
-  if (now_.at < rule.ran + kLeastPause) return std::nullopt;
+  const bool in_wait = rule.running && rule.running->response.waits_for_time();
+  if (!in_wait && now_.at < rule.ran + kLeastPause) return std::nullopt;
   if (rule.waiting && now_.at <= rule.waiting->until) return rule.waiting->side;
   if (rule.rule->kind == vm::RuleKind::when_else && rule.last && rule.ran_side != rule.last)
     return cools(rule, *rule.last) ? std::nullopt : rule.last;
