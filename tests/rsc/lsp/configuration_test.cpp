@@ -127,6 +127,11 @@ void add_descriptions(const nlohmann::json& schema, std::string& all) {
 
 }  // namespace
 
+TEST_CASE("hover says nothing of a key that belongs to another object") {
+  CHECK(hover_in_robot("{\"chan|nels\": {}}").empty());
+  CHECK(hover_in_robot("{\"sensors\": [{\"sam|ples\": 1}]}").empty());
+}
+
 TEST_CASE("hover says of every key of robot.json what the schema says") {
   std::string all;
   add_descriptions(nlohmann::json::parse(compiler::testing::read_file(
