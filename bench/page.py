@@ -54,7 +54,7 @@ Kernel:
 * Every context switch spends three instructions on the CPU time of threads. No peer's figure includes this.
 * `kernel/yield_isolated` includes the second system call, with which the thread that now runs takes its events.
 * `kernel/mailbox` misses its bar. It includes the comparison with the last reading, the timestamps and the announcement.
-* `kernel/lock_out_add` misses its bar. It is the lock-out time while threads are added, as when a program is loaded.
+* `kernel/lock_out_add` is the lock-out time while threads are added, as when a program is loaded.
 
 Path of a reading:
 

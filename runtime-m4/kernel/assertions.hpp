@@ -65,6 +65,13 @@ public:
       assert_that(locked || machine_.mode() == port::Mode::handler, service, "without a lock");
     }
   }
+  // … or no switch.
+  void still(const char* service = __builtin_FUNCTION()) const {
+    if constexpr (kAssertions) {
+      const bool still = machine_.held() != port::Held::none;
+      assert_that(still || machine_.mode() != port::Mode::thread, service, "without a lock");
+    }
+  }
   // The firmware evaluates `holds` too, so it should be no more than a comparison of members.
   void that(bool holds, const char* why, const char* service = __builtin_FUNCTION()) const {
     if constexpr (kAssertions) assert_that(holds, service, why);

@@ -263,6 +263,7 @@ private:
   [[gnu::cold]] std::uint8_t find_ceiling() const;
   std::uint8_t rank_of_running() const;
   void swap_with_next(unsigned rank);
+  void swap_ranks(Thread& sinks, Thread& rises);
   void move_highest(const Thread& sunk, const Thread& risen);
 
   std::array<std::uint8_t, kCategories> highest_of_;  // rank of the highest thread of each category

@@ -1,6 +1,7 @@
 // Keeps the order of the threads: updates ranks when a thread is added or removed, or its priority
 // changes. A thread is added at the bottom and removed from there, and moves by exchanges of
-// neighbours. Each exchange has its own Lock, so interrupts are held off for one exchange only.
+// neighbours. A SwitchLock covers each change. Interrupts only see the two ranks and their bits in the ready set, so they are held
+// off only while those are exchanged.
 // Which thread outranks which: scheduler.hpp. Kernel::select_next() chooses the thread that runs.
 #include "runtime-m4/kernel/scheduler.hpp"
 
@@ -10,9 +11,9 @@
 
 namespace robosync::kernel {
 
-// Adds the thread at the lowest rank. Under a Lock.
+// Adds the thread at the lowest rank. Under a SwitchLock.
 void Kernel::enter(Thread& thread) {
-  expect().locked();
+  expect().still();
   by_rank_[count_] = &thread;
   thread.set_rank(count_, ready_);
   std::uint8_t& highest = highest_of_[index(thread.category())];
@@ -21,9 +22,9 @@ void Kernel::enter(Thread& thread) {
   follow_highest();
 }
 
-// Removes the lowest thread, which must not be ready. Under a Lock.
+// Removes the lowest thread, which must not be ready. Under a SwitchLock.
 void Kernel::leave(const Thread& thread) {
-  expect().locked();
+  expect().still();
   --count_;
   by_rank_[count_] = &idle_;
   std::uint8_t& highest = highest_of_[index(thread.category())];
@@ -60,27 +61,26 @@ void Kernel::set_priority(Thread& thread, Priority priority) {
   }
 }
 
-// Exchanges the thread at `rank` with the next lower one. Interrupts are held off meanwhile.
+// Exchanges the thread at `rank` with the next lower one.
 void Kernel::swap_with_next(unsigned rank) {
-  port::Lock lock(machine_);
+  port::SwitchLock still(machine_);
   Thread& sinks = *by_rank_[rank];
   Thread& rises = *by_rank_[rank + 1];
-  const ReadySet::Position upper = sinks.ready_position_;
-  const ReadySet::Position lower = rises.ready_position_;
-  const bool rising_ready = ReadySet::exchange(upper, lower);
-  sinks.ready_position_ = lower;
-  rises.ready_position_ = upper;
-  sinks.rank_ = static_cast<std::uint8_t>(rank + 1);
-  rises.rank_ = static_cast<std::uint8_t>(rank);
+  swap_ranks(sinks, rises);
   by_rank_[rank] = &rises;
   by_rank_[rank + 1] = &sinks;
   if (sinks.category() != rises.category()) move_highest(sinks, rises);
-  if (running_ == &rises) follow_running();
-  if (running_ == &sinks) {
-    follow_running();
-    // Now the other thread runs, if it is ready, or the holder of a mutex whose ceiling this was.
-    if (rising_ready || held_ != nullptr) machine_.request_switch();
-  }
+  if (&sinks == running_ || &rises == running_) follow_running();
+}
+
+inline void Kernel::swap_ranks(Thread& sinks, Thread& rises) {
+  port::Lock lock(machine_);
+  const ReadySet::Position upper = sinks.ready_position_;
+  const ReadySet::Position lower = rises.ready_position_;
+  ReadySet::exchange(upper, lower);
+  sinks.ready_position_ = lower;
+  rises.ready_position_ = upper;
+  rises.rank_ = sinks.rank_++;
 }
 
 // After an exchange of threads of different categories: the highest rank of one category may be one
@@ -101,8 +101,11 @@ void Kernel::follow_highest() {
   follow_running();
 }
 
+// After the rank of the running thread, or its ceiling, may have changed. An interrupt that came since then has compared the rank
+// of the thread that it made ready with the old one, so that comparison is made again.
 void Kernel::follow_running() {
   if (running_rank_ != kNoneRuns) running_rank_ = rank_of_running();
+  if (ready_.first() < running_rank_) machine_.request_switch();
 }
 
 }  // namespace robosync::kernel

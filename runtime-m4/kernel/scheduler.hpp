@@ -42,16 +42,13 @@ public:
   }
   static constexpr void insert(Position position) { *position.word |= position.bit; }
   static constexpr void erase(Position position) { *position.word &= ~position.bit; }
-  // Swaps the bits at two positions. True if `b` was in the set.
-  static constexpr bool exchange(Position a, Position b) {
+  // Swaps the bits at two positions.
+  static constexpr void exchange(Position a, Position b) {
     const std::uint32_t in_a = *a.word & a.bit;
     const std::uint32_t in_b = *b.word & b.bit;
-    if ((in_a | in_b) == 0) return false;
-    if ((in_a != 0) != (in_b != 0)) {
-      *a.word ^= a.bit;
-      *b.word ^= b.bit;
-    }
-    return in_b != 0;
+    if ((in_a | in_b) == 0 || (in_a != 0 && in_b != 0)) return;
+    *a.word ^= a.bit;
+    *b.word ^= b.bit;
   }
   static constexpr bool contains(Position position) { return (*position.word & position.bit) != 0; }
 

@@ -25,8 +25,8 @@ bool Kernel::add(Thread& thread, const ThreadSpec& spec) {
   {
     port::Lock lock(machine_);
     thread.set_standing(standing(spec.category, priority));
-    enter(thread);
   }
+  enter(thread);
   rise(thread);
   port::Lock lock(machine_);
   thread.state_ = Thread::State::ready;
@@ -45,8 +45,8 @@ void Kernel::remove(Thread& thread) {
     if (watcher_ == &thread) watcher_ = nullptr;
   }
   sink_below(thread, kBelowAll);
-  port::Lock lock(machine_);
   leave(thread);
+  port::Lock lock(machine_);
   thread.state_ = Thread::State::absent;
 }
 
