@@ -9,28 +9,43 @@ namespace robosync::analysis {
 namespace {
 
 // A sensor whose period is shorter than the window is asked several times in it.
-std::uint32_t times_in_window(const vm::Sensor& sensor) {
+std::uint32_t times_in_window(const vm::Sensor& sensor, std::uint32_t window_us) {
   const std::uint32_t period_us = std::max<std::uint32_t>(sensor.period_ms, 1) * 1000;
-  return (policy::kBusWindowUs + period_us - 1) / period_us;
+  return (window_us + period_us - 1) / period_us;
 }
+
+constexpr std::uint32_t kTickUs = 1000;
+constexpr std::uint32_t kOtherWorkUs = 100;  // as in policy::bus_window_us()
 
 }  // namespace
 
+std::uint32_t answered_in_us(const vm::Image& image, const policy::BoardCosts& board,
+                             const vm::Sensor& sensor) {
+  const std::uint32_t window_us = policy::bus_window_us(board.bus_ahead_ms);
+  std::uint32_t us = kOtherWorkUs + kTickUs;
+  for (const vm::Sensor& other : image.sensors)
+    if (other.bus == sensor.bus && vm::is_on_spi(other.driver) == vm::is_on_spi(sensor.driver))
+      us += policy::bus_us(other, board) * times_in_window(other, window_us);
+  return std::clamp(us, board.bus_ahead_ms * kTickUs, window_us + kOtherWorkUs);
+}
+
 std::vector<BusLoad> overloaded_buses(const vm::Image& image, const policy::BoardCosts& board) {
+  const std::uint32_t window_us = policy::bus_window_us(board.bus_ahead_ms);
   std::vector<BusLoad> loads;
   for (unsigned s = 0; s < image.sensors.size(); ++s) {
     const vm::Sensor& sensor = image.sensors[s];
-    const std::uint32_t us = policy::bus_us(sensor, board) * times_in_window(sensor);
+    const std::uint32_t us = policy::bus_us(sensor, board) * times_in_window(sensor, window_us);
     if (us == 0) continue;
     const bool spi = vm::is_on_spi(sensor.driver);
     auto load = std::ranges::find_if(
         loads, [&](const BusLoad& one) { return one.bus == sensor.bus && one.spi == spi; });
     if (load == loads.end())
-      load = loads.insert(loads.end(), BusLoad{.bus = sensor.bus, .spi = spi});
+      load =
+          loads.insert(loads.end(), BusLoad{.bus = sensor.bus, .spi = spi, .window_us = window_us});
     load->us += us;
     load->shares.push_back({s, us});
   }
-  std::erase_if(loads, [](const BusLoad& load) { return load.us <= policy::kBusWindowUs; });
+  std::erase_if(loads, [](const BusLoad& load) { return load.us <= load.window_us; });
   return loads;
 }
 

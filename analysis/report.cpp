@@ -2,6 +2,7 @@
 #include "analysis/report.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace robosync::analysis {
 namespace {
@@ -25,9 +26,16 @@ std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
 
 // For an algorithm whose input is sampled, counts from that sample; for a sensor with an echo, of sound or
 // light, from its pulse.
-ResponseTime from_the_reading(const TaskSet& set, std::size_t source, Priorities priorities) {
+[[gnu::noinline]] ResponseTime from_the_reading(const TaskSet& set, std::size_t source,
+                                                Priorities priorities) {
   ResponseTime response = response_time_of(set, source, priorities);
-  const Instructions late = set.sources[source].jitter;
+  Instructions late = set.sources[source].jitter;
+  if (ResponseTime whole = response_time_from_asking(set, source, priorities);
+      whole.bounded && (!response.bounded || whole.time < response.time + late)) {
+    late = set.sources[source].delay;
+    response = std::move(whole);
+    response.time -= late;
+  }
   const Instructions measuring = set.sources[source].measuring;
   if (late + measuring == 0) return response;
   response.time += late + measuring;
@@ -79,7 +87,7 @@ ResponseReport response_report(const vm::Image& image, const policy::BoardCosts&
     PathTiming path;
     path.sensor = source.name;
     path.period = source.period;
-    path.measuring = source.measuring;
+    path.measuring = source.measuring != 0 ? source.measuring : source.early;
     path.base = from_the_reading(base, s, Priorities::base);
     if (cap > 0) path.adapted = from_the_reading(adapted, s, Priorities::adapted);
     for (const std::string& actuator : source.actuators) {

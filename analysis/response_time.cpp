@@ -266,6 +266,12 @@ private:
   Instructions blocking_ = 0;
 };
 
+// Not inlined: it is much code.
+[[gnu::noinline]] ResponseTime solve(const TaskSet& set, std::size_t mine, Priorities priorities,
+                                     Chain chain) {
+  return Analysis(set, mine, priorities, chain).solve();
+}
+
 // From the release at the beginning of the chain to the release of this one.
 Instructions lateness(const TaskSet& set, const Source& follower, Priorities priorities) {
   Chain chain{1, follower.delay};
@@ -275,7 +281,7 @@ Instructions lateness(const TaskSet& set, const Source& follower, Priorities pri
     chain.delays += set.sources[root].delay;
     root = set.sources[root].follows;
   }
-  const ResponseTime response = Analysis(set, root, priorities, chain).solve();
+  const ResponseTime response = solve(set, root, priorities, chain);
   return response.bounded ? response.time : kForeverLate;
 }
 
@@ -352,8 +358,20 @@ double utilization(const TaskSet& set) {
   return sum;
 }
 
+// The same thread asks and samples, so that what the sample releases counts as work before the end of this chain.
+ResponseTime response_time_from_asking(const TaskSet& set, std::size_t source,
+                                       Priorities priorities) {
+  const Source& sample = set.sources[source];
+  if (sample.follows == Source::kNone) return {};
+  const Source& asking = set.sources[sample.follows];
+  if (asking.follows != Source::kNone || asking.step != 0 || asking.rank != sample.rank ||
+      asking.raised != sample.raised)
+    return {};
+  return solve(set, sample.follows, priorities, Chain{1, sample.delay});
+}
+
 ResponseTime response_time_of(const TaskSet& set, std::size_t source, Priorities priorities) {
-  return Analysis(set, source, priorities).solve();
+  return solve(set, source, priorities, {});
 }
 
 }  // namespace robosync::analysis

@@ -35,6 +35,7 @@ struct Source {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::size_t follows = kNone;
   Instructions delay = 0;
+  Instructions early = 0;  // of a sample on a bus: how long before it is due it is asked for
   Instructions jitter = 0;
   // It is released this long after what it measures: an echo is under way meanwhile, and costs no work.
   Instructions measuring = 0;
@@ -106,6 +107,12 @@ void settle(TaskSet& set, Priorities priorities);
 [[nodiscard]] double utilization(const TaskSet& set, const Firing& rule);
 // The share of the processor that everything takes together; above 1 it is overloaded.
 [[nodiscard]] double utilization(const TaskSet& set);
+
+// From the asking for a sensor's sample to the end of the step that contains its announcement: all of it is work in one stretch,
+// which is idle while the bus works. Never less than what passes, and mostly less than the jitter and the response time together.
+// Unbounded if it is not asked.
+[[nodiscard]] ResponseTime response_time_from_asking(const TaskSet& set, std::size_t source,
+                                                     Priorities priorities);
 
 // From the release of a source to the end of the step that contains its announcement.
 [[nodiscard]] ResponseTime response_time_of(const TaskSet& set, std::size_t source,

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/bus_load.hpp"
 #include "analysis/costs.hpp"
 #include "analysis/exclusive.hpp"
 #include "analysis/step_work.hpp"
@@ -162,7 +163,8 @@ private:
         source.measuring = instructions_in_ms(policy::kEchoMs);
       } else {
         source.follows = asked;
-        source.delay = instructions_in_ms(1 + policy::kBusTicks);
+        source.early = instructions_in_ms(board_.bus_ahead_ms);
+        source.delay = instructions_in_ms(answered_in_us(image_, board_, sensor)) / 1000;
       }
     }
     if (const Instructions measuring = time_of_measuring(sensor, source.period); measuring != 0)

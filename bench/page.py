@@ -75,14 +75,14 @@ Firmware:
   numbers that survive a power cycle took four, algorithms four and a half, and the owner's signature ten and a half.
 * `firmware/power_up_to_program` is the time until the paper's program, loaded from the board's store, begins. It ranges from
   8,000 to 15,000, depending on how often the host sends requests meanwhile.
-* `firmware/idle_second_paper` excludes the instructions of the bit-banged I2C bus. `firmware/idle_second_paper_i2c` is those
-  alone.
-* `i2c/…` is a sample of a motion sensor where the chip's I2C master works by itself: the driver's call that asks for it, the bus
-  interrupts, and the driver's call that takes the bytes. QEMU has neither the master nor the sensor. So a test plays both through
-  the debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The sensor's thread wakes twice
-  for a sample; the most that each takes, `wake_by_timer` of the board's `costs.def`, is added: 900 in all. On the reference
-  board, whose bus is bit-banged, a sample does keep the processor busy (`firmware/idle_second_paper_i2c`), and lower threads
-  wait.
+* `firmware/idle_second_paper` excludes the code of the I2C bus, which the processor drives bit by bit.
+  `firmware/idle_second_paper_i2c` is that alone.
+* `i2c/…_sample` is a sample of a sensor on I2C: the driver's call that asks for it, the bus interrupts, and the driver's call that
+  takes the bytes. QEMU has neither the I2C masters nor the motion sensors of the other boards. So a test plays both through the
+  debugger, and counts the instructions of the shipped firmware meanwhile (`bench/bus.py`). The sensor's thread wakes twice
+  for a sample; the most that each takes, `wake_by_timer` of the board's `costs.def`, is added: 900 in all, and 700 on the
+  reference board. There the processor drives the bus itself, and `i2c/max34451_sample` is the sample of the paper's touch sensor, with
+  75 interrupts. `i2c/longest_hold_mps2` is the longest of them: nothing that the bus does holds a behaviour up for longer.
 * `ear/block` is the work for 20 ms of sound at the most expensive pitch, on the micro:bit V2; `ear/spectrum` that for its spectrum, which
   `own_words` reads.
 

@@ -77,8 +77,7 @@ std::string ms_text(std::uint32_t us) {
 Overload overload_of_bus(const vm::Image& image, const analysis::BusLoad& load) {
   Overload overload{
       fmt::format("{} bus {} needs {} for all that may be asked of it together, and has {}",
-                  load.spi ? "SPI" : "I2C", load.bus, ms_text(load.us),
-                  ms_text(policy::kBusWindowUs)),
+                  load.spi ? "SPI" : "I2C", load.bus, ms_text(load.us), ms_text(load.window_us)),
       {"leave out channels or sensors on this bus"}};
   if (load.shares.size() == 1) return overload;
   std::vector<std::string> parts;

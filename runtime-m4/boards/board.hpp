@@ -100,8 +100,9 @@ public:
   // Buses with their own hardware work in the background, so each transfer is requested twice. After ask_buses(true),
   // i2c_transfer() and spi_transfer() only queue it: they return true if nothing is read, otherwise false. Once buses_busy() is
   // false, the same call after ask_buses(false) returns the result immediately; a transfer still running then is given up.
-  // Boards that do not ask ahead perform a transfer when it is requested.
-  virtual bool buses_ask_ahead() const { return false; }
+  // Boards that do not ask ahead perform a transfer when it is requested. The others say how many ticks ahead: requests of all that is
+  // due together take the longer, the slower the bus.
+  virtual unsigned buses_ask_ahead() const { return 0; }
   virtual void ask_buses(bool /*ahead*/) {}
   virtual bool buses_busy() const { return false; }
   // Is the level of an input (pins()) high? False for any other pin.

@@ -17,7 +17,8 @@ bool transfer(const ServedBus& at, bool ahead, std::span<const std::byte> out,
 
 // Until the requested transfer is done, or late.
 void await(const ServedBus& at) {
-  for (unsigned i = 0; i <= policy::kBusTicks && (i == 0 || at.board.buses_busy()); ++i)
+  const unsigned most = at.board.buses_ask_ahead() + policy::kBusTicks;
+  for (unsigned i = 0; i < most && (i == 0 || at.board.buses_busy()); ++i)
     at.kernel.sleep_until(at.kernel.now() + kernel::kTick);
 }
 
@@ -25,7 +26,7 @@ void await(const ServedBus& at) {
 
 [[gnu::noinline]] bool exchange(const ServedBus& at, std::span<const std::byte> out,
                                 std::span<std::byte> in, unsigned tries) {
-  const bool ahead = at.board.buses_ask_ahead();
+  const bool ahead = at.board.buses_ask_ahead() != 0;
   for (; tries != 0; --tries) {
     if (ahead) {
       static_cast<void>(transfer(at, true, out, in));

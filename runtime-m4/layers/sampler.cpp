@@ -55,7 +55,7 @@ kernel::Duration DriverSampler::asks_ahead(const vm::Sensor& sensor) const {
   if (vm::is_by_echo(sensor.driver)) return kernel::milliseconds(policy::kEchoMs);
   if (vm::is_served(sensor.driver)) return 0;  // its thread waits for the bus itself
   const bool on_bus = vm::is_on_i2c(sensor.driver) || vm::is_on_spi(sensor.driver);
-  return on_bus && board_.buses_ask_ahead() ? kernel::kTick : 0;
+  return on_bus ? board_.buses_ask_ahead() * kernel::kTick : 0;
 }
 
 drivers::ServedBus DriverSampler::bus_of(const vm::Sensor& sensor) {

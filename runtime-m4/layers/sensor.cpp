@@ -112,12 +112,12 @@ void SensorLayer::run_sensor(unsigned sensor) {
   }
 }
 
-// When the program begins, unless the sensor takes longer than a tick to answer, or is already measuring: one that was asked for
+// When the program begins, unless the sensor itself takes long to answer, or is already measuring: one that was asked for
 // SAFETY at the last moment has its whole period, too.
 kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   const bool measures = vm::measures_when_told(wiring.driver) && !units_[sensor].contact.discards();
-  const bool at_once = asks_ahead(sensor) <= kernel::kTick && !measures;
+  const bool at_once = !vm::is_by_echo(wiring.driver) && !measures;
   return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
 }
 
@@ -125,12 +125,12 @@ kernel::Time SensorLayer::first_sample(unsigned sensor) const {
 // but not for ever.
 void SensorLayer::await_sample(unsigned sensor, kernel::Time due) {
   const kernel::Duration ahead = asks_ahead(sensor);
-  if (ahead != 0) {
-    kernel_.sleep_until(std::max(due, ahead) - ahead);
-    ask(sensor);
-  }
+  if (ahead == 0) return kernel_.sleep_until(due);
+  kernel_.sleep_until(std::max(due, ahead) - ahead);
+  const kernel::Time late = kernel_.now() + ahead + policy::kBusTicks * kernel::kTick;
+  ask(sensor);
   kernel_.sleep_until(due);
-  for (unsigned i = 0; ahead != 0 && i < policy::kBusTicks && sampler_->awaits(); ++i)
+  while (kernel_.now() < late && sampler_->awaits())
     kernel_.sleep_until(kernel_.now() + kernel::kTick);
 }
 

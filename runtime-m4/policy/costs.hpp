@@ -96,7 +96,8 @@ constexpr std::uint32_t ask_cost(vm::DriverId driver, const BoardCosts& board) {
   BoardCosts asking = board;
   asking.i2c_transfer = board.i2c_ask;
   asking.spi_transfer = board.spi_ask;
-  asking.i2c_byte = asking.spi_byte = 0;
+  asking.i2c_byte = board.i2c_ask_byte;
+  asking.spi_byte = 0;
   return vm::is_on_i2c(driver) || vm::is_on_spi(driver) ? sample_cost(driver, asking) : 0;
 }
 
@@ -118,15 +119,18 @@ constexpr std::uint32_t bus_us(const vm::Sensor& sensor, const BoardCosts& board
 constexpr std::uint32_t frame_cost(std::uint32_t servos, const BoardCosts& board) {
   constexpr std::uint32_t kAsked = 4;  // bytes, with two addresses
   const std::uint32_t waits = board.i2c_ask == 0 ? 0 : (1 + servos) * board.wake_by_timer;
-  return board.i2c_transfer + kAsked * board.i2c_byte + board.i2c_ask + waits +
-         servos * (sample_cost(vm::DriverId::pca9685, board) + board.i2c_ask);
+  return board.i2c_transfer + board.i2c_ask + kAsked * (board.i2c_byte + board.i2c_ask_byte) +
+         waits +
+         servos *
+             (sample_cost(vm::DriverId::pca9685, board) + ask_cost(vm::DriverId::pca9685, board));
 }
 
 // The cost of a display's frame, which has at most kDisplayPortions transfers. Its sample cost is that of the longest one.
 inline constexpr std::uint32_t kDisplayPortions = 8;
 constexpr std::uint32_t display_frame_cost(const BoardCosts& board) {
   const std::uint32_t wait = board.i2c_ask == 0 ? 0U : std::uint32_t{board.wake_by_timer};
-  return kDisplayPortions * (sample_cost(vm::DriverId::ssd1306, board) + board.i2c_ask + wait);
+  return kDisplayPortions * (sample_cost(vm::DriverId::ssd1306, board) +
+                             ask_cost(vm::DriverId::ssd1306, board) + wait);
 }
 
 constexpr ActuatorCosts actuator_costs(vm::DriverId driver) {

@@ -38,9 +38,11 @@ inline constexpr std::uint32_t kLeastPauseMs = kSetpointPeriodMs;
 // Ticks (of 1 ms) that a sensor waits at most for a bus transfer after its sample is due.
 inline constexpr std::uint32_t kBusTicks = 2;
 
-// All transfers that are requested from a bus at the same time must end within this time, in microseconds. They are requested a
-// tick ahead. 100 µs are left for work that the processor does first.
-inline constexpr std::uint32_t kBusWindowUs = (1 + kBusTicks) * 1000 - 100;
+// All transfers that are requested from a bus at the same time must end within this time, in microseconds. They are requested
+// `ahead_ms` ahead (bus_ahead_ms of the board's costs). 100 µs are left for work that the processor does first.
+constexpr std::uint32_t bus_window_us(std::uint32_t ahead_ms) {
+  return (ahead_ms + kBusTicks) * 1000 - 100;
+}
 
 // From the trigger pulse of an echo sensor to its sample. If there is no echo within 38 ms, none comes.
 inline constexpr std::uint32_t kEchoMs = 40;

@@ -152,7 +152,7 @@ TEST_CASE("check: a sensor that is read too often is refused, and why") {
   const Robot fast("1000Hz");
   const auto check_says = [](const std::string& text) {
     CHECK_THAT(text, Contains("E0412") && Contains("the board cannot keep up") &&
-                         Contains("of the processor") && Contains("for touch") &&
+                         Contains("touch -> arm takes up to") && Contains("for touch") &&
                          Contains("robot.rsl:1:1") && Contains("lower rate"));
   };
   const test::Outcome bad = test::rsc({"check", fast.file});
@@ -198,7 +198,12 @@ TEST_CASE("check: more than an I2C bus carries at once is refused, where it is a
                                 Contains("and has 2.90 ms") && Contains("robot.json:5") &&
                                 Contains("imu 0.71 ms, pads 2.27 ms"));
   }
-  CHECK(check("mps2-an386", 9).exit == 0);  // the processor waits for its bus
+  // The reference board's bus is slower, and is asked earlier.
+  CHECK(check("mps2-an386", 1).exit == 0);
+  const test::Outcome slow = check("mps2-an386", 2);
+  CHECK(slow.exit == 1);
+  CHECK_THAT(slow.err, Contains("I2C bus 0 needs 3.9") && Contains("and has 3.90 ms") &&
+                           Contains("imu 2.4") && Contains("pads 1.54 ms"));
 
   // An image that was compiled nevertheless.
   const test::Folder folder;
@@ -286,7 +291,14 @@ TEST_CASE(
     CHECK(us_of(board, 1, max34451, 11, 20) == 0);
     CHECK(us_of(board, 1, max34451, 12, 20) != 0);
   }
-  CHECK(us_of(costs_of_board("mps2-an386"), 20, vm::DriverId::lsm6dsl, 1, 20) == 0);
+  // … and of the reference board, which asks earlier.
+  const policy::BoardCosts& reference = costs_of_board("mps2-an386");
+  using enum vm::DriverId;
+  CHECK(us_of(reference, 1, hts221, 2, 200) == 0);
+  CHECK(us_of(reference, 1, mpu6050, 7, 20) == 0);
+  CHECK(us_of(reference, 2, mpu6050, 7, 20) != 0);
+  CHECK(us_of(reference, 1, max34451, 5, 20) == 0);
+  CHECK(us_of(reference, 1, max34451, 6, 20) != 0);
 }
 
 TEST_CASE("a rule that starves the board is refused by check, compile and upload") {
@@ -559,7 +571,12 @@ TEST_CASE(
   CHECK(set.sources[asking].step == 0);
   CHECK(set.sources[asking].actuators.empty());
   CHECK(set.sources[sampling].follows == asking);
-  CHECK(set.sources[sampling].delay == 3ULL * board.instructions_per_ms());
+  const auto us = [&](unsigned bus_us) {
+    return Instructions{board.instructions_per_ms()} * bus_us / 1000;
+  };
+  CHECK(set.sources[sampling].early == us(1'000));
+  CHECK(set.sources[sampling].delay ==
+        us(1'100 + 2 * board.i2c_transfer_us + 23 * board.i2c_byte_us));
   CHECK(set.sources[asking].rank == set.sources[sampling].rank);
   const analysis::ResponseReport report =
       analysis::response_report(image, board, tool::module_cost);

@@ -298,6 +298,28 @@ TEST_CASE("a rule that cools down wins once, and may lose in every step") {
   CHECK(bound() == alone + (300 - 200) + steps * set.lost);
 }
 
+TEST_CASE("from the asking for a sample on, all is one stretch of work, and the wait for its bus") {
+  TaskSet set;
+  set.sources.resize(3);
+  for (analysis::Source& source : set.sources)
+    source.period = 20'000;
+  set.sources[0].sample = 100;  // asks
+  set.sources[1].sample = 200;
+  set.sources[1].step = 1'000;
+  set.sources[1].follows = 0;
+  set.sources[1].delay = 3'000;
+  set.sources[2].step = 500;  // outranks both
+  analysis::settle(set, Priorities::base);
+  const auto whole = analysis::response_time_from_asking(set, 1, Priorities::base);
+  CHECK(whole.bounded);
+  CHECK(whole.time == 100 + 3'000 + 200 + 1'000 + 500);
+  CHECK(whole.time <=
+        analysis::response_time_of(set, 1, Priorities::base).time + set.sources[1].jitter);
+  CHECK_FALSE(analysis::response_time_from_asking(set, 2, Priorities::base).bounded);
+  set.sources[1].rank = 1;  // another thread's
+  CHECK_FALSE(analysis::response_time_from_asking(set, 1, Priorities::base).bounded);
+}
+
 TEST_CASE("what follows a step comes late, and the next one may come soon after") {
   constexpr Time kPeriod = 20'000;
   TaskSet set;

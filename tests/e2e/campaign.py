@@ -74,8 +74,8 @@ END
 """
 # Where a fault is injected: functions that the board calls all the time. The interpreter runs in the behaviours' threads.
 PLACES = {"interpreter": INTERPRETER, "sensor": "robosync::layers::Mailboxes::post(",
-          "actuator": "robosync::guard::OutputGuard::drive(", "bus": of_the_board("I2c::transfer("),
-          "halves of bits": of_the_board("I2c::half_bit() const"),
+          "actuator": "robosync::guard::OutputGuard::drive(", "bus": "robosync::boards::AskingBoard<robosync::boards::mps2::Buses>::i2c_transfer(",
+          "bits": "Timer0_Handler",
           "safety": "robosync::Runtime::look_at_rules(", "switch": "PendSV_Handler"}
 WATCHED = {"kick": of_the_board("Board::watchdog_kick()"), "nmi": "NMI_Handler", "reset": "Reset_Handler",
            "said": "robosync::Runtime::say(bool)"}

@@ -12,14 +12,14 @@ from support import LineReader, needs_i2c
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bench"))
 from board import FIRMWARE, NAME  # noqa: E402
-from counting import of_the_board, symbols  # noqa: E402
+from counting import symbols  # noqa: E402
 
 PATIENCE = 20
 PC, LR = 15, 14
-WRITTEN = 3  # the register with the number of bytes that a transfer writes
 ROUNDS = 3  # until a device counts as silent, or as answering again (runtime-m4/layers/contact.hpp)
-# Half bits in a transfer that reads a word, up to the second bit that the device sends; its bits are zeros.
-TO_DATA = 1 + 3 + 2 * 9 + 2 * 9 + 3 + 2 * 9 + 4
+# Rises of the clock in a sample, up to the second bit that the device sends; its bits are zeros. Two bytes that select the page,
+# behind the address, and a stop; a register, a start, and the address again.
+TO_DATA = 3 * 9 + 1 + 2 * 9 + 1 + 9 + 2
 TOUCH = {"name": "touch", "type": "I2C", "bus": 0, "address": "0x70", "device": "max34451",
          "channels": {"LEVEL": {"input": 0, "range": [0, 10], "rate": "20Hz", "stale_after": "500ms"}}}
 GHOST = {"name": "ghost", "type": "I2C", "bus": 0, "address": "0x33", "device": "i2c_register",
@@ -33,7 +33,7 @@ class Bus(DebuggedTest):
     def setUp(self):
         super().setUp()
         self.board.set_touch(0)
-        self.at = {name: address for name, address in symbols(FIRMWARE).items() if "I2c::" in name or "half_bit" in name}
+        self.at = {name: address for name, address in symbols(FIRMWARE).items() if "AskedBus<" in name or "Timer0" in name}
 
     def begin(self, *sensors):
         """Uploads a program that reads the first channel of each; returns the finished rsc."""
@@ -51,7 +51,7 @@ class Bus(DebuggedTest):
     def fail_transfers(self, times):
         """Makes transfers fail as if no device acknowledged."""
         with self.debugger() as debugger:
-            transfer = self.place(of_the_board("I2c::transfer("))
+            transfer = self.place("robosync::boards::AskedBus<robosync::boards::mps2::LineMaster>::collect(")
             for _ in range(times):
                 debugger.run_to(transfer, lambda: None)
                 back = debugger.register(LR)
@@ -110,10 +110,8 @@ class Bus(DebuggedTest):
         """The board is reset while the device sends a zero: the device holds the data line low until it gets more clocks."""
         self.begin(TOUCH)
         with self.debugger() as debugger:
-            transfer = self.place(of_the_board("I2c::transfer("))
-            # The driver selects a page first.
-            self.assertTrue(any(debugger.register_at(transfer, WRITTEN, 1) == [1] for _ in range(10)))
-            debugger.register_at(self.place(of_the_board("I2c::half_bit() const")), PC, TO_DATA)
+            debugger.run_to(self.place("robosync::boards::AskedBus<robosync::boards::mps2::LineMaster>::ask("), lambda: None)
+            debugger.register_at(self.place("Timer0_Handler"), PC, TO_DATA)
             self.board.qmp.command("system_reset")
         done = self.begin(TOUCH)
         self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -1,4 +1,4 @@
-"""A real device: the MAX34451 on the emulated I2C bus, set over QMP, read by our bit-banged driver."""
+"""A real device: the MAX34451 on the emulated I2C bus, set over QMP, read by our driver, bit by bit."""
 
 import json
 import unittest

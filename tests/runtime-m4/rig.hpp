@@ -73,7 +73,7 @@ public:
     return i2c_transfer(bus, address, page, {});
   }
   boards::BusState buses() const override { return bus_state; }
-  bool buses_ask_ahead() const override { return asks_ahead; }
+  unsigned buses_ask_ahead() const override { return asks_ahead; }
   void ask_buses(bool ahead) override { asked_ahead = ahead; }
   bool buses_busy() const override { return busy && busy(); }
   bool input(std::uint16_t pin) const override { return level(pin); }
@@ -155,7 +155,8 @@ public:
   std::vector<std::pair<std::uint8_t, std::uint16_t>>
       opened;  // the SPI bus has its pins: select pins
   std::function<void()> on_spi_pins;
-  bool asks_ahead = false, asked_ahead = false;
+  unsigned asks_ahead = 0;  // ticks
+  bool asked_ahead = false;
   std::function<bool()> busy;
   boards::BusState bus_state;
   std::function<bool(std::uint16_t pin)> level = [](std::uint16_t) { return true; };  // pulled up

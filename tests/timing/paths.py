@@ -59,11 +59,6 @@ def samples():
             | {name: declared["analog"] for name in by_adc} | {name: declared["encoder"] for name in by_edges})
 
 
-def display_portions():
-    """The most that a display gets in a frame."""
-    return int(re.search(r"kDisplayPortions = (\d+);", (ROOT / "runtime-m4/policy/costs.hpp").read_text())[1])
-
-
 def robot(actuators=4, sensors=None):
     """A robot.json: a sensor that is fed, and virtual actuators a0, a1 …"""
     fed = {"name": "s", "type": "VIRTUAL", "channels": {f"c{c}": {"range": [0, 100]} for c in range(4)}}

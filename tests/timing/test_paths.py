@@ -283,26 +283,27 @@ class Sampling(unittest.TestCase):
         self.assertEqual(paths.samples()["vl53l0x"], said + 2 * costs["i2c_transfer"] + 7 * costs["i2c_byte"])
 
     def test_a_servo_chip(self):
-        """It is asked how it stands. The one here is never as it was set up, so it is set up again in each frame: six transfers more.
-        What a pulse takes is one of them."""
+        """It is asked how it stands. The one here is never as it was set up, so it is set up again in each frame: six transfers more, each
+        of which is taken in the tick in which the next is asked for. What a pulse takes is one of them."""
         costs = paths.costs()
         config = paths.robot()
         config["actuators"] = [{"name": "a0", "type": "I2C", "address": "0x4a", "channel": 3, "enable": 36, "device": "pca9685_servo"}]
         ticks = run(behavior("MOVE a0 TO 180deg OVER 1s"), [feed(10), wait(200)], config)
         measured = max(ticks.ticks[20:]) - ticks.idle_tick
-        said = 7 * costs["i2c_transfer"] + (4 + 5 * 3 + 6) * costs["i2c_byte"]
+        said = costs["i2c_ask"] + costs["i2c_transfer"] + 6 * costs["i2c_byte"]
         print(f"\n  a servo chip that is set up: {measured}, said {said}")
         self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
         self.assertLessEqual(said, LOOSEST * measured)
         self.assertEqual(paths.samples()["pca9685"], costs["i2c_transfer"] + 4 * costs["i2c_byte"])
 
     def test_a_display(self):
-        """Until all has been drawn once it gets as many portions in a frame as it ever does."""
+        """Until all has been drawn once it gets as many portions in a frame as it ever does: each is taken in the tick in which the next
+        is asked for."""
         costs = paths.costs()
         config = paths.robot() | {"actuators": [{"name": "a0", **ActuatorDrivers.DISPLAY}]}
         ticks = run(behavior("SHOW a0 happy"), [feed(10), wait(300)], config)
         measured = max(ticks.ticks[20:]) - ticks.idle_tick
-        said = paths.display_portions() * paths.samples()["ssd1306"]
+        said = costs["i2c_ask"] + paths.samples()["ssd1306"]
         print(f"\n  a display that is drawn: {measured}, said {said}")
         self.assertGreaterEqual(said + 2 * costs["wake_by_timer"] + costs["kMonitor"], measured)
         self.assertLessEqual(said, LOOSEST * measured)

@@ -44,6 +44,13 @@ public:
   bool read_two(bool ahead, std::uint8_t address, TwoBlocks blocks, std::span<std::byte> in);
   bool is_busy() const { return running_ != nullptr; }
   BusState state() const { return {clears_, static_cast<std::uint8_t>(held_)}; }
+  // For somebody who uses the lines besides, while is_busy() is false: frees them as before a transfer. False: one stays low.
+  bool free() {
+    const port::Alone alone;
+    if (running_ == nullptr) held_ = !free_lines();
+    return !held_;
+  }
+  Master& master() { return master_; }
   // [its interrupt]
   void on_interrupt();
 

@@ -16,6 +16,8 @@
 
 namespace robosync::boards {
 
+extern const std::uint32_t kBusAheadMs;  // of the board's costs
+
 template <typename Buses>
 class AskingBoard : public Board {
 public:
@@ -29,7 +31,7 @@ public:
   void spi_open(std::uint8_t bus, std::uint16_t select) final;
   void spi_close() final;
   BusState buses() const final;
-  bool buses_ask_ahead() const final { return true; }
+  unsigned buses_ask_ahead() const final { return kBusAheadMs; }
   void ask_buses(bool ahead) final { asks_ahead_ = ahead; }
   bool buses_busy() const final;
 

@@ -78,8 +78,8 @@ class BusRequests {
 public:
   using Word = BusRequest::Word;
   using State = RequestState;
-  // More than fit into the time (policy::kBusWindowUs).
-  static constexpr std::size_t kMost = 20;
+  // More than fit into the time (policy::bus_window_us()).
+  static constexpr std::size_t kMost = ROBOSYNC_BUS_REQUESTS;
 
   // The request with this shape and these bytes, if it is known: `head` is the first word of BusRequest::bytes, and the bytes from
   // out[1] on come after it. Not inlined, as place(): in one function they need more registers than there are.

@@ -10,13 +10,15 @@
 #   board_clock     if no load can read a free-running 32-bit counter: ROBOSYNC_CLOCK_IS_SYSTICK if there is none,
 #                   or ROBOSYNC_CLOCK_IS_CALLED (port/cortex-m4/clock.hpp)
 #   board_code      ROBOSYNC_CODE_BITS=n if behaviours may read only the first 2^n bytes of the code region (port/cortex-m4/isolation.cpp)
+#   board_idle      ON if the idle thread sometimes has work instead of sleeping (port/cortex-m4/hooks.hpp)
+#   board_requests  how many requests an I2C bus keeps (boards/common/bus_requests.hpp); default: 20
 set(board_common ${CMAKE_CURRENT_LIST_DIR})
 
 # Options for compiling the board's sources and for linking with them. The firmware, the board's tests and its benches share
 # them.
 function(robosync_wire_board target)
   set(script ${CMAKE_CURRENT_SOURCE_DIR}/boards/${board_folder}/${board_script})
-  target_compile_definitions(${target} PUBLIC ${board_definitions} PRIVATE
+  target_compile_definitions(${target} PUBLIC ${board_definitions} ROBOSYNC_BUS_REQUESTS=${board_requests} PRIVATE
     ROBOSYNC_BOARD_COSTS="runtime-m4/boards/${ROBOSYNC_BOARD}/costs.def"
     ROBOSYNC_BOARD_WIRING="runtime-m4/boards/${ROBOSYNC_BOARD}/wiring.hpp"
     ROBOSYNC_BOARD_INTERRUPTS="runtime-m4/boards/${board_folder}/interrupts.hpp")
@@ -39,6 +41,9 @@ function(robosync_board target folder)
   endif()
   if(NOT board_line)
     set(board_line 0)
+  endif()
+  if(NOT board_requests)
+    set(board_requests 20)
   endif()
   file(WRITE ${folder}/machine "${board_machine}\n")
   file(WRITE ${folder}/line "${board_line}\n")

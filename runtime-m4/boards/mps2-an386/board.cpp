@@ -18,11 +18,17 @@ std::array<volatile std::uint32_t, kVirtualEnables> robosync_virtual_enables{1, 
 
 namespace robosync::boards::mps2 {
 
+Board board;
+
 namespace {
 
 constexpr std::uint32_t kWatchdogTicks = kClockHz / 1000 * Board::kWatchdogMs;
 
-Board board;
+// A pin at an enable or a select input.
+void pull_low(std::uint16_t pin, bool low) {
+  const unsigned place = pin - unsigned{kFirstEnable};
+  if (place < kVirtualEnables) robosync_virtual_enables[place] = low ? 0 : 1;
+}
 
 WatchdogRegisters& watchdog() {
   return at<WatchdogRegisters>(kWatchdog);
@@ -36,35 +42,8 @@ Board::Board() {
   clock.value = ~std::uint32_t{0};
   clock.control = kTimerOn;
   spi::start();
-}
-
-bool Board::i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
-                         std::span<std::byte> in) {
-  return bus == 0 && i2c_.transfer(address, out, in);
-}
-
-bool Board::i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) {
-  return bus == 0 && i2c_.transfer(address, page, {});
-}
-
-// As the base does it, but with one frame less on the stack of the sensor's thread.
-bool Board::i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
-                         std::span<std::byte> in) {
-  if (bus != 0) return false;
-  std::byte at = blocks.first;
-  const std::span out(&at, 1);
-  const bool first = i2c_.transfer(address, out, in.first(blocks.split));
-  at = blocks.second;
-  return i2c_.transfer(address, out, in.subspan(blocks.split)) && first;
-}
-
-bool Board::spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
-                         std::span<std::byte> in) {
-  if (bus != 0) return false;
-  enable(select, true);
-  const bool done = spi::transfer(out, in);
-  enable(select, false);
-  return done;
+  start_i2c();
+  port::core::enable_interrupt(kTimer0Interrupt);
 }
 
 bool Board::input(std::uint16_t pin) const {
@@ -130,8 +109,16 @@ std::uint32_t Board::pwm_read(std::uint16_t pin) const {
 }
 
 void Board::enable(std::uint16_t pin, bool on) {
-  const unsigned place = pin - unsigned{kFirstEnable};
-  if (place < kVirtualEnables) robosync_virtual_enables[place] = on ? 0 : 1;
+  pull_low(pin, on);
+}
+
+bool WaitingSpi::transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
+                          std::span<std::byte> in) {
+  if (ahead) return in.empty();
+  pull_low(select, true);
+  const bool done = spi::transfer(out, in);
+  pull_low(select, false);
+  return done;
 }
 
 void Board::link_start(const LineEvents& events) {

@@ -13,10 +13,12 @@
 #include <span>
 
 #include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/asking_board.hpp"
 #include "runtime-m4/boards/common/reset.hpp"
 #include "runtime-m4/boards/mps2-an386/eeprom.hpp"
 #include "runtime-m4/boards/mps2-an386/i2c.hpp"
 #include "runtime-m4/boards/mps2-an386/registers.hpp"
+#include "runtime-m4/boards/mps2-an386/spi.hpp"
 #include "runtime-m4/boards/mps2-an386/uart.hpp"
 #include "runtime-m4/boards/pins.hpp"
 
@@ -41,7 +43,18 @@ extern "C" std::array<volatile std::uint32_t, kVirtualEnables> robosync_virtual_
 
 namespace robosync::boards::mps2 {
 
-class Board final : public boards::Board {
+struct Buses {  // for AskingBoard
+  using Spi = WaitingSpi;
+  static constexpr std::array<I2c, 1> i2c() { return {I2c(LineMaster())}; }
+};
+
+}  // namespace robosync::boards::mps2
+
+extern template class robosync::boards::AskingBoard<robosync::boards::mps2::Buses>;
+
+namespace robosync::boards::mps2 {
+
+class Board final : public AskingBoard<Buses> {
 public:
   // First time-out: NMI, outputs off. Second time-out, after as long again: reset.
   static constexpr std::uint32_t kWatchdogMs = 50;
@@ -53,14 +66,6 @@ public:
   ResetReason reset_reason() const override { return last_reset(); }
   const policy::BoardPins& pins() const override { return boards::kPins; }
   static_assert(!meet(kOutputs, kInputs) && !meet(kOutputs, kAnalog), "let_go() does nothing here");
-  bool i2c_transfer(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> out,
-                    std::span<std::byte> in) override;
-  bool spi_transfer(std::uint8_t bus, std::uint16_t select, std::span<const std::byte> out,
-                    std::span<std::byte> in) override;
-  bool i2c_select(std::uint8_t bus, std::uint8_t address, std::span<const std::byte> page) override;
-  bool i2c_read_two(std::uint8_t bus, std::uint8_t address, TwoBlocks blocks,
-                    std::span<std::byte> in) override;
-  BusState buses() const override { return i2c_.state(); }
   bool input(std::uint16_t pin) const override;
   Store* store() override { return &eeprom_; }
   std::uint32_t take_echo(std::uint16_t echo) override;
@@ -96,8 +101,9 @@ private:
   policy::VirtualWheels wheels_;
   Uart uart_;
   Player player_;
-  I2c i2c_{kI2c0};
-  Eeprom eeprom_{i2c_};
+  Eeprom eeprom_{i2c(0)};
 };
+
+extern Board board;
 
 }  // namespace robosync::boards::mps2

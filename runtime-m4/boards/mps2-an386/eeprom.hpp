@@ -21,19 +21,24 @@ public:
   std::uint32_t page() const override { return 128; }
 
   Outcome read(std::uint32_t at, std::span<std::byte> bytes) override {
-    return bus_.transfer_between(kAddress, place(at), bytes);
+    return exchange(place(at), bytes);
   }
   Outcome write(std::uint32_t at, std::span<const std::byte> bytes) override {
     std::array<std::byte, 2 + kPiece> out{};
     const auto address = place(at);
     const auto behind = std::copy(address.begin(), address.end(), out.begin());
     std::copy_n(bytes.begin(), std::min(bytes.size(), kPiece), behind);
-    return bus_.transfer_between(kAddress, std::span(out).first(address.size() + bytes.size()), {});
+    return exchange(std::span(out).first(address.size() + bytes.size()), {});
   }
 
 private:
   static constexpr std::uint8_t kAddress = 0x50;
 
+  // What was asked of the bus comes first.
+  Outcome exchange(std::span<const std::byte> out, std::span<std::byte> in) {
+    LineMaster::hurry();
+    return bus_.free() ? bus_.master().transfer_between(kAddress, out, in) : Outcome::busy;
+  }
   static constexpr std::array<std::byte, 2> place(std::uint32_t at) {
     return {static_cast<std::byte>(at >> 8), static_cast<std::byte>(at)};
   }

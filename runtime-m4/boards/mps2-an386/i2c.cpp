@@ -1,184 +1,241 @@
+// See i2c.hpp. NXP's UM10204: the clock is high for 0.6 us or more, and low for 1.3 us or more.
 #include "runtime-m4/boards/mps2-an386/i2c.hpp"
 
 #include "runtime-m4/boards/mps2-an386/registers.hpp"
+#include "runtime-m4/port/cortex-m4/core.hpp"
+#include "runtime-m4/port/cortex-m4/hooks.hpp"
+#include "runtime-m4/port/cortex-m4/register.hpp"
+
+volatile std::uint32_t robosync_has_work = 0;
 
 namespace robosync::boards::mps2 {
 
 namespace {
 
-// Iterations of the waiting loop: four cycles each, 5 µs at 25 MHz.
-constexpr std::uint16_t kHalfBit = kClockHz / 200'000 / 4;
-// 1.25 µs, including the code in between.
-constexpr std::uint16_t kFastHalfBit = kHalfBit / 6;
-// How long devices may hold the clock low in one transfer, in half bits: 1 ms.
-constexpr unsigned kStretchLimit = 200;
-constexpr unsigned kMostClocks = 9;  // a byte and its acknowledge bit
+constexpr std::uint32_t kTimerCounts = kClockHz / 1'000'000 * 10;
+constexpr std::uint16_t kPatience = 400;  // bits: a millisecond or more
+constexpr std::uint32_t kReads = 1;       // in the first byte
+// Of a frame: what comes after nine bits, the next bit to send, and the acknowledge bit to send.
+constexpr std::uint32_t kFull = 1U << 9, kNextBit = 1U << 31, kAcknowledge = 1U << 23;
+
+// Three cycles each time, or four.
+[[gnu::always_inline]] inline void wait(unsigned turns) {
+#if defined(__arm__)
+  asm volatile("1: subs %0, #1\n\tbne 1b" : "+r"(turns) : : "cc");
+#else
+  static_cast<void>(turns);
+#endif
+}
+constexpr unsigned kHigh = 3;      // 0.4 us, besides what is done meanwhile
+constexpr unsigned kStoreLow = 6;  // 0.7 us, besides what is done meanwhile
+constexpr unsigned kFree = 11;     // 1.3 us
+
+constexpr port::Register kLines{kI2c0 + kI2cLines};  // written: released
+constexpr port::Register kPull{kI2c0 + kI2cPull};
+constexpr port::Register kControl{kTimer0 + kTimerControl};
+constexpr port::Register kValue{kTimer0 + kTimerValue};
+constexpr port::Register kReload{kTimer0 + kTimerReload};
+constexpr port::Register kInterrupt{kTimer0 + kTimerInterrupt};
+constexpr std::uint32_t kNvicBit = 1U << kTimer0Interrupt;
 
 }  // namespace
 
-void I2c::half_bit() const {
-  unsigned turns = half_bit_;
-  do
-    asm volatile("nop");
-  while (--turns != 0);
+[[gnu::always_inline]] inline void LineMaster::pull(std::uint32_t line) {
+  kPull.write(line);
 }
 
-void I2c::pull(std::uint32_t line) {
-  at<I2cRegisters>(registers_).clear = line;
+[[gnu::always_inline]] inline void LineMaster::release(std::uint32_t line) {
+  kLines.write(line);
 }
 
-void I2c::release(std::uint32_t line) {
-  at<I2cRegisters>(registers_).set = line;
+bool LineMaster::clock_is_high() {
+  return (kLines.read() & kI2cClock) != 0;
 }
 
-bool I2c::is_high(std::uint32_t line) const {
-  return (at<I2cRegisters>(registers_).set & line) != 0;
+bool LineMaster::data_is_high() {
+  return (kLines.read() & kI2cData) != 0;
 }
 
-// A device may hold the clock low to gain time, but not for ever. If a sensor took the bus from the store, its transfer is over
-// when the store's thread runs again: the bus then has no user.
-bool I2c::release_clock() {
+bool LineMaster::are_high() const {
+  constexpr std::uint32_t kBoth = kI2cClock | kI2cData;
+  return user_ == User::store || (kLines.read() & kBoth) == kBoth;
+}
+
+void LineMaster::drive_clock(bool high) {
+  high ? release(kI2cClock) : pull(kI2cClock);
+}
+
+void LineMaster::half_bit() {
+  wait(kFree);
+}
+
+void LineMaster::start() {
+  release(kI2cClock | kI2cData);
+  kReload.write(kTimerCounts - 1);
+}
+
+void LineMaster::prepare(std::uint8_t address, std::span<const std::byte> out,
+                         std::span<std::byte> in) {
+  out_ = out.data();
+  out_end_ = out_ + out.size();
+  in_ = in.data();
+  in_end_ = in_ + in.size();
+  address_ = static_cast<std::uint8_t>(address << 1);
+  patience_ = kPatience;
+  receives_ = false;
+}
+
+void LineMaster::begin(std::uint8_t address, std::span<const std::byte> out,
+                       std::span<std::byte> in) {
+  const bool taken = user_ == User::store;
+  user_ = User::asked;
+  prepare(address, out, in);
+  if (taken) {
+    release(kI2cData);
+    next_ = Next::break_off;
+  } else {
+    send_start();
+  }
+  kValue.write(kTimerCounts - 1);
+  kControl.write(kTimerOn | kTimerInterrupts);
+  robosync_has_work = 1;
+}
+
+// Both lines are high, and the clock has been for long enough.
+Transfer LineMaster::send_start() {
+  pull(kI2cData);
+  wait(kHigh);
+  pull(kI2cClock);
+  return send(std::uint32_t{address_} << 24 | kAcknowledge);
+}
+
+// The clock is low.
+[[gnu::always_inline]] inline Transfer LineMaster::send(std::uint32_t bits) {
+  frame_ = bits | 1;
+  next_ = Next::bit;
+  (bits & kNextBit) != 0 ? release(kI2cData) : pull(kI2cData);
+  return Transfer::goes_on;
+}
+
+// The last byte is not acknowledged, so the device stops sending.
+Transfer LineMaster::receive() {
+  receives_ = true;
+  return send(0xFFU << 24 | (in_ + 1 == in_end_ ? kAcknowledge : 0));
+}
+
+// The clock is low. For a stop, the data line rises while it is high.
+Transfer LineMaster::want(Next next) {
+  next_ = next;
+  next == Next::start ? release(kI2cData) : pull(kI2cData);
+  return Transfer::goes_on;
+}
+
+Transfer LineMaster::on_interrupt() {
+  kInterrupt.write(1);
+  return do_bit();
+}
+
+// What comes back is what the line shows, also while this side sends. The clock stays low until all is loaded: from one interrupt
+// to the next at once that is 1.3 us.
+[[gnu::always_inline]] inline Transfer LineMaster::do_bit() {
+  std::uint32_t frame = frame_;
+  Next next = next_;
+  asm volatile("" : "+r"(frame), "+r"(next));
   release(kI2cClock);
-  half_bit();
-  if (user_.load(std::memory_order_relaxed) == User::nobody) return false;
-  for (; !is_high(kI2cClock); --patience_) {
-    if (patience_ == 0) return false;
-    half_bit();
-  }
-  return true;
-}
-
-bool I2c::free_bus() {
-  release(kI2cData);
-  if (!release_clock()) return false;
-  if (is_high(kI2cData)) return true;
-  clears_ = static_cast<std::uint16_t>(clears_ + !held_);
-  for (unsigned i = 0; i < kMostClocks && !is_high(kI2cData); ++i) {
-    pull(kI2cClock);
-    half_bit();
-    if (!release_clock()) return false;
-  }
-  return is_high(kI2cData);
-}
-
-// Start, or repeated start: the data line falls while the clock is high.
-bool I2c::start() {
-  release(kI2cData);
-  half_bit();
-  if (!release_clock() || !is_high(kI2cData)) return false;
-  pull(kI2cData);
-  half_bit();
+  wait(kHigh);
+  const std::uint32_t lines = kLines.read();
+  if ((lines & kI2cClock) == 0) [[unlikely]]
+    return stretched();
+  if (next != Next::bit) [[unlikely]]
+    return do_special();
   pull(kI2cClock);
-  return true;
+  frame_ = frame = frame << 1 | lines / kI2cData;
+  if ((frame & kFull) != 0) [[unlikely]]
+    return end_byte();
+  (frame & kNextBit) != 0 ? release(kI2cData) : pull(kI2cData);
+  return Transfer::goes_on;
 }
 
-// Releases the data line even if the clock does not rise, so that the next user finds it free.
-void I2c::stop() {
-  pull(kI2cData);
-  half_bit();
-  static_cast<void>(release_clock());
+Transfer LineMaster::end_byte() {
+  if (receives_) {
+    *in_++ = static_cast<std::byte>(frame_ >> 1);
+    if (in_ != in_end_) return receive();
+    done_ = true;
+    return want(Next::stop);
+  }
+  done_ = false;
+  if ((frame_ & 1) != 0) return want(Next::stop);  // not acknowledged
+  if ((address_ & kReads) != 0) return receive();
+  if (out_ != out_end_) return send(std::to_integer<std::uint32_t>(*out_++) << 24 | kAcknowledge);
+  done_ = in_ == in_end_;
+  return want(done_ ? Next::stop : Next::start);
+}
+
+// The clock is high.
+Transfer LineMaster::do_special() {
+  switch (next_) {
+    case Next::break_off:
+      pull(kI2cClock);
+      return want(Next::stop_and_start);
+    case Next::start:
+      if (!data_is_high()) return end(false);
+      address_ |= kReads;
+      return send_start();
+    case Next::stop_and_start:
+      release(kI2cData);
+      half_bit();
+      return data_is_high() ? send_start() : end(false);
+    case Next::bit:
+    case Next::stop:
+      break;
+  }
   release(kI2cData);
   half_bit();
+  return end(done_);
 }
 
-bool I2c::write_bit(bool bit) {
-  bit ? release(kI2cData) : pull(kI2cData);
-  half_bit();
-  if (!release_clock()) return false;
-  pull(kI2cClock);
-  return true;
+Transfer LineMaster::stretched() {
+  return --patience_ != 0 ? Transfer::goes_on : end(false);
 }
 
-bool I2c::read_bit(bool& bit) {
+Transfer LineMaster::end(bool done) {
+  let_go();
+  return done ? Transfer::done : Transfer::failed;
+}
+
+// A pending interrupt would do a bit of nobody's.
+void LineMaster::let_go() {
+  robosync_has_work = 0;
+  kControl.write(0);
+  kInterrupt.write(1);
+  port::Register{port::core::kNvicIcpr}.write(kNvicBit);
+  release(kI2cClock);
   release(kI2cData);
-  half_bit();
-  if (!release_clock()) return false;
-  bit = is_high(kI2cData);
-  pull(kI2cClock);
-  return true;
+  user_ = User::nobody;
 }
 
-// False when the device does not acknowledge.
-bool I2c::write_byte(std::byte byte) {
-  for (unsigned mask = 0x80; mask != 0; mask >>= 1) {
-    if (!write_bit((std::to_integer<unsigned>(byte) & mask) != 0)) return false;
+void LineMaster::hurry() {
+  for (; robosync_has_work != 0; wait(2))
+    port::Register{port::core::kNvicIspr}.write(kNvicBit);
+}
+
+Store::Outcome LineMaster::transfer_between(std::uint8_t address, std::span<const std::byte> out,
+                                            std::span<std::byte> in) {
+  {
+    const port::Alone alone;
+    if (user_ != User::nobody) return Store::Outcome::taken;
+    user_ = User::store;
+    prepare(address, out, in);
+    send_start();
   }
-  bool refused = true;
-  return read_bit(refused) && !refused;
-}
-
-bool I2c::read_byte(std::byte& byte, bool last) {
-  unsigned value = 0;
-  for (unsigned i = 0; i < 8; ++i) {
-    bool bit = false;
-    if (!read_bit(bit)) return false;
-    value = value << 1 | (bit ? 1U : 0U);
+  while (true) {
+    const port::Alone alone;
+    if (user_ != User::store) return Store::Outcome::taken;
+    const Transfer state = do_bit();
+    if (state != Transfer::goes_on)
+      return state == Transfer::done ? Store::Outcome::done : Store::Outcome::busy;
+    wait(kStoreLow);
   }
-  byte = static_cast<std::byte>(value);
-  return write_bit(last);  // a NACK ends the read
-}
-
-bool I2c::write_message(std::uint8_t address, std::span<const std::byte> out) {
-  if (!start() || !write_byte(static_cast<std::byte>(address << 1))) return false;
-  for (const std::byte byte : out) {
-    if (!write_byte(byte)) return false;
-  }
-  return true;
-}
-
-bool I2c::read_message(std::uint8_t address, std::span<std::byte> in) {
-  if (!start() || !write_byte(static_cast<std::byte>(address << 1 | 1))) return false;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    if (!read_byte(in[i], i + 1 == in.size())) return false;
-  }
-  return true;
-}
-
-// Does not wait again for a line that was already held low: other threads need the processor. Also false if a sensor has
-// used the bus in the meantime.
-bool I2c::prepare(bool taken) {
-  patience_ = held_ ? 0 : kStretchLimit;
-  const std::uint16_t clears = clears_;
-  const bool held = !free_bus();
-  if (user_.load(std::memory_order_relaxed) == User::nobody) return false;
-  held_ = held;
-  // The store's device may have been about to acknowledge when its transfer was interrupted: not a fault of the bus.
-  if (taken && !held) {
-    clears_ = clears;
-    pull(kI2cClock);
-    half_bit();
-    stop();
-  }
-  return !held;
-}
-
-bool I2c::exchange(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
-  patience_ = kStretchLimit;
-  const bool done = (out.empty() && !in.empty() ? true : write_message(address, out)) &&
-                    (in.empty() ? true : read_message(address, in));
-  stop();
-  user_.store(User::nobody, std::memory_order_relaxed);
-  return done;
-}
-
-bool I2c::transfer(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in) {
-  const bool taken = user_.exchange(User::sensor, std::memory_order_relaxed) == User::store;
-  if (taken) taken_ = true;
-  half_bit_ = kHalfBit;
-  if (prepare(taken)) return exchange(address, out, in);
-  user_.store(User::nobody, std::memory_order_relaxed);
-  return false;
-}
-
-Store::Outcome I2c::transfer_between(std::uint8_t address, std::span<const std::byte> out,
-                                     std::span<std::byte> in) {
-  taken_ = false;
-  half_bit_ = kFastHalfBit;
-  user_.store(User::store, std::memory_order_relaxed);
-  const bool done = prepare(false) && exchange(address, out, in);
-  user_.store(User::nobody, std::memory_order_relaxed);
-  if (taken_) return Store::Outcome::taken;
-  return done ? Store::Outcome::done : Store::Outcome::busy;
 }
 
 }  // namespace robosync::boards::mps2

@@ -1,65 +1,77 @@
-// An I2C master on two open-drain lines driven by software, about 100 kHz.
+// An I2C master on two open-drain lines that software drives, a bit at a time, so that nothing waits for a transfer: see AskedBus
+// (boards/common/asked_bus.hpp). An interrupt of timer 0 does the next bit every 10 us, and no bit takes longer than 3 us. While no
+// thread needs the processor, the idle thread does not wait for the timer (hurry()): the bus then runs at some 300 kHz.
 //
-// It has two kinds of users: sensors, and the board's store, which ranks below them. A sensor takes the bus away from the store
-// even in the middle of a transfer, so that it never waits for it.
+// The board's store ranks below: its thread does the bits of its transfers, and a transfer for anybody else takes the bus away
+// from it, even in the middle of a byte.
 //
-// Time is bounded: a device that holds the clock low, holds the data line low or does not answer makes a
-// transfer fail, never hang. If the data line is held low before a transfer, up to nine clocks free it (a device that was
-// interrupted in the middle of a byte then releases it). While a line stays low, a transfer fails immediately.
+// Lines are driven as a device of 400 kHz allows. A device may hold the clock low, but not for ever: then the transfer fails.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "runtime-m4/boards/board.hpp"
+#include "runtime-m4/boards/common/asked_bus.hpp"
+#include "runtime-m4/boards/common/transfer.hpp"
+#include "runtime-m4/boards/store.hpp"
 
 namespace robosync::boards::mps2 {
 
-class I2c {
+class LineMaster {  // for AskedBus
 public:
-  explicit constexpr I2c(std::uintptr_t registers) : registers_(registers) {}
+  static void start();
+  void begin(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in);
+  Transfer on_interrupt();
+  void let_go();
+  static bool clock_is_high();
+  static bool data_is_high();
+  // … or will be, when the store's transfer has been broken off.
+  bool are_high() const;
+  static void take_clock() {}
+  static void give_clock_back() {}
+  static void drive_clock(bool high);
+  static void half_bit();
 
-  // Writes `out`, then, after a repeated start, reads `in`; an empty one is skipped. False when
-  // the device does not acknowledge or the bus is stuck. About 100 µs a byte.
-  // [one thread at a time]
-  [[nodiscard]] bool transfer(std::uint8_t address, std::span<const std::byte> out,
-                              std::span<std::byte> in);
-  // The same for the store, about 400 kHz. `taken`: a transfer() preempted it and has made the device abort. No transfer() may
-  // come during a read: a sending device may hold the data line.  [the thread with the lowest rank]
+  // A transfer for the store; both lines are high (AskedBus::free()). `taken`: another one took the bus, or has it. None may come during a read: a sending device may hold
+  // the data line.  [the thread with the lowest rank]
   [[nodiscard]] Store::Outcome transfer_between(std::uint8_t address,
                                                 std::span<const std::byte> out,
                                                 std::span<std::byte> in);
-  BusState state() const { return {clears_, static_cast<std::uint8_t>(held_)}; }
+  // Does the bits of the running transfers at once.  [a thread that no other needs]
+  static void hurry();
 
 private:
-  enum class User : std::uint8_t { nobody, sensor, store };
+  enum class User : std::uint8_t { nobody, asked, store };
+  // What the next rise of the clock is for. break_off ends the store's transfer: its device may be about to acknowledge.
+  enum class Next : std::uint8_t { bit, start, stop, break_off, stop_and_start };
 
-  bool prepare(bool taken);
-  bool exchange(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in);
-  void half_bit() const;
-  bool write_message(std::uint8_t address, std::span<const std::byte> out);
-  bool read_message(std::uint8_t address, std::span<std::byte> in);
-  bool free_bus();
-  bool start();
-  void stop();
-  bool write_byte(std::byte byte);
-  bool read_byte(std::byte& byte, bool last);
-  bool write_bit(bool bit);
-  bool read_bit(bool& bit);
-  bool release_clock();
-  void pull(std::uint32_t line);
-  void release(std::uint32_t line);
-  bool is_high(std::uint32_t line) const;
+  void prepare(std::uint8_t address, std::span<const std::byte> out, std::span<std::byte> in);
+  Transfer do_bit();
+  [[gnu::noinline]] Transfer do_special();
+  [[gnu::noinline]] Transfer end_byte();
+  [[gnu::noinline, gnu::cold]] Transfer stretched();
+  Transfer end(bool done);
+  Transfer want(Next next);
+  Transfer send(std::uint32_t bits);
+  Transfer receive();
+  Transfer send_start();
+  static void pull(std::uint32_t line);
+  static void release(std::uint32_t line);
 
-  std::uintptr_t registers_;
-  std::uint16_t clears_ = 0;
-  std::uint16_t half_bit_ = 1;  // iterations of half_bit() for the current user
-  bool held_ = false;
-  std::atomic<User> user_ = User::nobody;
-  std::atomic<bool> taken_ = false;  // by a sensor, from the store
-  unsigned patience_ = 0;            // half bits for which devices may still hold the clock low
+  const std::byte* out_ = nullptr;
+  const std::byte* out_end_ = nullptr;
+  std::byte* in_ = nullptr;
+  std::byte* in_end_ = nullptr;
+  std::uint32_t frame_ =
+      0;  // from its top: the bits to send; at its bottom: those that have come, below a 1
+  std::uint16_t patience_ = 0;  // bits for which devices may still hold the clock low
+  std::uint8_t address_ = 0;    // as sent, with the direction of the transfer
+  Next next_ = Next::bit;
+  User user_ = User::nobody;
+  bool receives_ = false;  // the running byte
+  bool done_ = false;      // all bytes; else the transfer has failed
 };
+using I2c = AskedBus<LineMaster>;
 
 }  // namespace robosync::boards::mps2

@@ -8,8 +8,8 @@ extern "C" {
 void Uart0Receive_Handler();
 void Uart0Transmit_Handler();
 void Uart1Transmit_Handler();
-// Unused in the firmware; the kernel's tests define them (mps2_an386.ld).
 void Timer0_Handler();
+// Unused in the firmware; the kernel's tests define it (mps2_an386.ld).
 void TestsOwn_Handler();
 }
 

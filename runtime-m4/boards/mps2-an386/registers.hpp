@@ -28,11 +28,10 @@ inline constexpr std::uint32_t kUartSendsOnly = 0b0101;  // transmitter, its int
 inline constexpr std::uint32_t kUartTransmitted = 1U << 0;
 inline constexpr std::uint32_t kUartReceived = 1U << 1;
 
-struct I2cRegisters {            // SBCon: two open-drain lines that software drives
-  volatile std::uint32_t set;    // read: state of the lines; write 1: release the line
-  volatile std::uint32_t clear;  // write 1: pull the line low
-};
+// SBCon: two open-drain lines that software drives.
 inline constexpr std::uintptr_t kI2c0 = 0x4002'A000;  // QEMU attaches -device to this bus
+inline constexpr std::uintptr_t kI2cLines = 0x00;  // read: their state; write 1: releases the line
+inline constexpr std::uintptr_t kI2cPull = 0x04;   // write 1: pulls the line low
 inline constexpr std::uint32_t kI2cClock = 1U << 0;
 inline constexpr std::uint32_t kI2cData = 1U << 1;
 
@@ -66,10 +65,14 @@ struct TimerRegisters {  // CMSDK APB timer: counts down, and restarts from `rel
   volatile std::uint32_t reload;
   volatile std::uint32_t interrupt;
 };
+inline constexpr std::uintptr_t kTimer0 = 0x4000'0000;
+inline constexpr std::uintptr_t kTimerControl = 0x00, kTimerValue = 0x04, kTimerReload = 0x08,
+                                kTimerInterrupt = 0x0C;
 inline constexpr std::uintptr_t kTimer1 = 0x4000'1000;
 inline constexpr unsigned kTimer0Interrupt = 8;
 inline constexpr unsigned kFreeInterrupt = 20;  // no device uses it
 inline constexpr std::uint32_t kTimerOn = 1U << 0;
+inline constexpr std::uint32_t kTimerInterrupts = 1U << 3;
 
 struct OneShotRegisters {  // CMSDK APB dual timer, the first of the two: counts down
   volatile std::uint32_t load;

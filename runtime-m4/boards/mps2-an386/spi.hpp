@@ -3,12 +3,26 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
-namespace robosync::boards::mps2::spi {
+namespace robosync::boards::mps2 {
+
+namespace spi {
 
 void start();
 // Writes `out`, then reads `in`; together at most vm::kMostSpiBytes. False if it does not end.  [one thread at a time]
 [[nodiscard]] bool transfer(std::span<const std::byte> out, std::span<std::byte> in);
 
-}  // namespace robosync::boards::mps2::spi
+}  // namespace spi
+
+// For AskingBoard: the transfer is made when its answer is wanted.
+struct WaitingSpi {
+  static bool transfer(bool ahead, std::uint16_t select, std::span<const std::byte> out,
+                       std::span<std::byte> in);
+  static void open(std::uint16_t /*select*/) {}
+  static void close() {}
+  static bool is_busy() { return false; }
+};
+
+}  // namespace robosync::boards::mps2

@@ -14,6 +14,11 @@ class Thread;
 // The one kernel of the firmware.
 extern "C" robosync::kernel::Kernel robosync_kernel;
 
+// Only where the idle thread sometimes has work (board_idle in board.cmake). While the first is not 0, the idle thread calls the
+// second instead of sleeping. That one may use no stack, because the idle thread's has no room.
+extern "C" volatile std::uint32_t robosync_has_work;
+extern "C" void robosync_work_instead();
+
 namespace robosync::port::hooks {
 
 // Counts of the clock (clock.hpp) in a tick (kernel::kTick).

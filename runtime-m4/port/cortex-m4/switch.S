@@ -184,23 +184,33 @@ robosync_become_idle:
     movs    r0, #2                  /* thread mode uses PSP, and has no FPU state */
     msr     control, r0
     isb
-    movs    r0, #0
-    msr     basepri, r0             /* the pending switch happens here */
-1:  movs    r0, #SWITCH_PRIORITY    /* a SwitchLock */
-    msr     basepri_max, r0
+    movs    r4, #SWITCH_PRIORITY
+    movs    r5, #0
+#if defined(ROBOSYNC_IDLE_WORKS)
+    ldr     r6, =robosync_has_work
+#endif
+    msr     basepri, r5             /* the pending switch happens here */
+1:  msr     basepri_max, r4         /* a SwitchLock */
+#if defined(ROBOSYNC_IDLE_WORKS)
+    ldr     r0, [r6]
+    cbnz    r0, 2f
+#endif
     bl      robosync_set_alarm
 robosync_idle_masks:
     cpsid   i
-    movs    r0, #0
-    msr     basepri, r0
+    msr     basepri, r5
     wfi                             /* any interrupt ends it, and is then held off until cpsie */
     bl      robosync_count_sleep
-    movs    r0, #SWITCH_PRIORITY    /* a SwitchLock again */
-    msr     basepri_max, r0
+    msr     basepri_max, r4         /* a SwitchLock again */
 robosync_idle_unmasks:
     cpsie   i
     bl      robosync_end_sleep
-    movs    r0, #0
-    msr     basepri, r0             /* the tick and the switch happen here */
+    msr     basepri, r5             /* the tick and the switch happen here */
     b       1b
+#if defined(ROBOSYNC_IDLE_WORKS)
+2:  msr     basepri, r5
+    bl      robosync_work_instead
+    b       1b
+    .pool
+#endif
     .size   robosync_become_idle, . - robosync_become_idle

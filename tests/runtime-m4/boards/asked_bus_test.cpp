@@ -453,7 +453,8 @@ TEMPLATE_TEST_CASE("a bus: what rsc lets be asked at once is there in time", "",
                    L475Bus<1>, L475Bus<2>) {
   const policy::BoardCosts& board = TestType::kCosts;
   const auto as_many_as_fit = [&](unsigned transfers, unsigned bytes) {
-    return policy::kBusWindowUs / (transfers * board.i2c_transfer_us + bytes * board.i2c_byte_us);
+    return policy::bus_window_us(board.bus_ahead_ms) /
+           (transfers * board.i2c_transfer_us + bytes * board.i2c_byte_us);
   };
   const auto check = [&](unsigned count, auto call) {
     Bus<TestType> bus;
@@ -461,7 +462,7 @@ TEMPLATE_TEST_CASE("a bus: what rsc lets be asked at once is there in time", "",
     REQUIRE(count <= decltype(bus.bus)::kMostRequests);
     for (unsigned i = 0; i < count; ++i)
       CHECK_FALSE(call(bus, true, static_cast<std::byte>(i)));
-    bus.run(policy::kBusWindowUs, 12);
+    bus.run(policy::bus_window_us(board.bus_ahead_ms), 12);
     for (unsigned i = 0; i < count; ++i)
       CHECK(call(bus, false, static_cast<std::byte>(i)));
   };

@@ -254,7 +254,8 @@ TEMPLATE_TEST_CASE("SPI: a bus that is closed has forgotten all, and its pins ar
 // With the boards' own figures, as in analysis/bus_load.cpp; each interrupt comes 12 us late.
 TEMPLATE_TEST_CASE("SPI: what rsc lets be asked at once is there in time", "", Microbit, L475) {
   const policy::BoardCosts& board = TestType::kCosts;
-  const unsigned fit = policy::kBusWindowUs / (board.spi_transfer_us + 3 * board.spi_byte_us);
+  const unsigned fit =
+      policy::bus_window_us(board.bus_ahead_ms) / (board.spi_transfer_us + 3 * board.spi_byte_us);
   using Requests = boards::microbit::PartBus;
   const unsigned count = std::min<unsigned>(fit, Requests::kMostRequests);
   Bus<TestType> bus;

@@ -48,10 +48,10 @@ WHEN near X > 30 DO MOVE left TO 45deg AT 180deg/s END
 struct ChipRig {
   explicit ChipRig(bool works_by_itself = false) {
     add(0x40, kEnable);
-    rig.board.asks_ahead = works_by_itself;
+    rig.board.asks_ahead = works_by_itself ? 1 : 0;
     rig.board.on_bus = [this](std::uint8_t, std::uint8_t address, std::span<const std::byte> out,
                               std::span<std::byte> in) {
-      return rig.board.asks_ahead ? later(address, out, in) : now(address, out, in);
+      return rig.board.asks_ahead != 0 ? later(address, out, in) : now(address, out, in);
     };
   }
   test::Pca9685& add(std::uint8_t address, std::uint16_t enable) {

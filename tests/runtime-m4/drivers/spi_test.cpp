@@ -188,7 +188,7 @@ TEST_CASE("a part on a bus that works by itself is asked a millisecond before it
   std::vector<Asked> asked;
   test::Mcp3008 chip;
   chip.counts[5] = 1000;
-  rig.board.asks_ahead = true;
+  rig.board.asks_ahead = 1;
   rig.board.on_spi = [&](std::uint8_t, std::uint16_t, std::span<const std::byte> out,
                          std::span<std::byte> in) {
     asked.push_back({rig.kernel.now() / 1000, rig.board.asked_ahead});

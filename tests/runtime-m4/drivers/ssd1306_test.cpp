@@ -77,15 +77,15 @@ struct DisplayRig {
   explicit DisplayRig(const std::string& body = "SHOW face happy",
                       const std::string& actuators = face("face"), bool works_by_itself = false) {
     add(0x3C);
-    rig.board.asks_ahead = works_by_itself;
+    rig.board.asks_ahead = works_by_itself ? 1 : 0;
     rig.board.on_bus = [this](std::uint8_t, std::uint8_t address, std::span<const std::byte> out,
                               std::span<std::byte> in) {
       longest = std::max(longest, out.size());
-      if (rig.board.asks_ahead && rig.board.asked_ahead) {
+      if (rig.board.asks_ahead != 0 && rig.board.asked_ahead) {
         taken = transfer(address, out, in);
         return in.empty();
       }
-      return rig.board.asks_ahead ? taken : transfer(address, out, in);
+      return rig.board.asks_ahead != 0 ? taken : transfer(address, out, in);
     };
     begin(when_near(body), robot_of(actuators));
   }

@@ -26,7 +26,7 @@ struct Asked {
 
 struct AskingRig {
   AskingRig() {
-    rig.board.asks_ahead = true;
+    rig.board.asks_ahead = 1;
     rig.board.on_transfer = [this](std::span<const std::byte> out, std::span<std::byte> in) {
       asked.push_back(
           {rig.kernel.now() / 1000, rig.board.asked_ahead, std::to_integer<int>(out.front())});
@@ -82,7 +82,7 @@ TEST_CASE("a sensor that is asked ahead: who has answers late is waited for, two
 
 TEST_CASE("a sensor on a bus that does not work by itself is asked when it is due, and only then") {
   AskingRig robot;
-  robot.rig.board.asks_ahead = false;
+  robot.rig.board.asks_ahead = 0;
   robot.run(25);
   CHECK(robot.asked ==
         std::vector<Asked>{{0, false, 1}, {0, false, 2}, {20, false, 1}, {20, false, 2}});
