@@ -194,6 +194,19 @@ struct Devices {
   std::array<std::uint16_t, 32> failed;  // by sensor: failed transfers; saturates at 65535
 };
 
+struct Probe {
+  std::uint8_t bus;
+  std::uint8_t address;  // 0x08 to 0x77; at any other, nothing answers
+  std::array<std::uint8_t, 2> reserved;
+};
+
+struct Probed {
+  std::uint8_t bus;
+  std::uint8_t address;
+  std::uint8_t answers;  // 1: it does
+  std::uint8_t held;     // 1: a line of that bus is held low, so that nothing on it can answer
+};
+
 struct GetState {
   std::uint32_t first;  // the values from this one on: the program's channels, then its variables
 };

@@ -254,6 +254,14 @@ void Runtime::fill_status(link::Status& status) const {
   status.reset_reason = board_.reset_reason();
 }
 
+link::Probed Runtime::probe(const link::Probe& at) {
+  const bool possible = at.address >= vm::kFirstAddress && at.address <= vm::kLastAddress;
+  const bool answers = possible && drivers_.probe(at.bus, at.address);
+  const bool held = at.bus < 8 && (board_.buses().held >> at.bus & 1) != 0;
+  return {at.bus, at.address, answers ? std::uint8_t{1} : std::uint8_t{0},
+          held ? std::uint8_t{1} : std::uint8_t{0}};
+}
+
 void Runtime::fill_devices(link::Devices& devices) const {
   const boards::BusState buses = board_.buses();
   devices.bus_clears = buses.clears;

@@ -99,6 +99,8 @@ public:
   // Fills in everything except bad_frames and lost_events, which only the link knows.
   void fill_status(link::Status& status) const;
   void fill_devices(link::Devices& devices) const;
+  // Whether anything answers there, whatever runs. Takes a few milliseconds.  [the link's thread]
+  link::Probed probe(const link::Probe& at);
   // The values from input `first` on.
   void fill_state(link::State& state, std::uint32_t first) const;
   bool running() const override { return running_; }

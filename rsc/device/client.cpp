@@ -328,6 +328,11 @@ link::Devices Client::devices() {
   return request<link::Devices>(MessageType::get_devices, MessageType::devices);
 }
 
+link::Probed Client::probe(std::uint8_t bus, std::uint8_t address) {
+  return request<link::Probed>(MessageType::probe, MessageType::probed,
+                               link::wire_bytes(link::Probe{bus, address, {}}));
+}
+
 link::State Client::state(std::uint32_t first) {
   return request<link::State>(MessageType::get_state, MessageType::state,
                               link::wire_bytes(link::GetState{first}));

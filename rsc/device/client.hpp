@@ -38,6 +38,8 @@ public:
   link::Status status();
   link::Fault last_fault();  // the latest one that the board has kept; no thread: none
   link::Devices devices();   // on the buses of the running program
+  // Whether anything answers at an address of an I2C bus.
+  link::Probed probe(std::uint8_t bus, std::uint8_t address);
   // What holds in the running program, with the values from input `first` on.
   link::State state(std::uint32_t first);
   link::Status clear(const link::ProgramHash& program);  // ends the program, if it runs

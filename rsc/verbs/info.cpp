@@ -1,4 +1,4 @@
-// rsc info --port P [--format human|json]
+// rsc info --port P [--scan] [--format human|json]
 #include <array>
 #include <iostream>
 #include <memory>
@@ -15,6 +15,7 @@
 #include "rsc/device/introduction.hpp"
 #include "rsc/device/keeping.hpp"
 #include "rsc/device/past.hpp"
+#include "rsc/device/scan.hpp"
 #include "rsc/device/session.hpp"
 #include "rsc/device/threads.hpp"
 #include "rsc/json.hpp"
@@ -94,6 +95,7 @@ struct Buses {
   }
   std::vector<OnBus> devices;
   unsigned clears;
+  std::optional<Scan> scan;
 };
 
 // What keeps the running program in `bytes` from its actuators.
@@ -116,7 +118,8 @@ std::string now_text(const Now& now) {
 }
 
 std::string buses_text(const Buses& buses) {
-  if (buses.devices.empty() && buses.clears == 0) return {};
+  const std::string scan = buses.scan ? scan_text(*buses.scan) : std::string();
+  if (buses.devices.empty() && buses.clears == 0) return scan;
   unsigned failed = 0;
   for (const OnBus& device : buses.devices)
     failed += device.failed;
@@ -125,7 +128,7 @@ std::string buses_text(const Buses& buses) {
   for (const OnBus& device : buses.devices)
     text += device.silent ? "silent    " + silent_text(device) + '\n'
                           : "found     " + found_text(device) + '\n';
-  return text;
+  return text + scan;
 }
 
 void print_board_json(const link::HelloReply& board, std::span<const std::byte> image,
@@ -136,6 +139,7 @@ void print_board_json(const link::HelloReply& board, std::span<const std::byte> 
   report["owner"] = owner_json(owner);
   report["kept"] = keeping_json(kept);
   report["buses"] = {{"clears", buses.clears}, {"devices", devices_json(buses.devices)}};
+  if (buses.scan) report["buses"]["scan"] = scan_json(*buses.scan);
   report["threads"] = threads_json(threads, {});
   std::cout << json_text(report) << '\n';
 }
@@ -176,13 +180,14 @@ void print_human(const link::HelloReply& board, std::span<const std::byte> image
   std::cout << threads_table(threads, {});
 }
 
-void info(const std::string& port, Format format) {
+void info(const std::string& port, bool scans, Format format) {
   Session session(port);
   const Past past(session.client);
   const std::vector<link::ThreadInfo> threads = session.client.threads();
   const std::vector<std::byte> image = session.client.running_image();
   const Now now(session.client, image);
-  const Buses buses(now.names.image, session.client.devices());
+  Buses buses(now.names.image, session.client.devices());
+  if (scans) buses.scan = scan_buses(session.client, text_of(session.board.board), buses.devices);
   const link::Kept kept = session.client.kept();
   const link::Authority owner = session.client.authority();
   format == Format::json
@@ -195,12 +200,15 @@ void info(const std::string& port, Format format) {
 void add_info(Options& options) {
   struct InfoOptions {
     std::string port;
+    bool scan = false;
     Format format = Format::human;
   };
   auto asked = std::make_shared<InfoOptions>();
   add_port_option(options, asked->port);
+  options.flag("--scan", asked->scan,
+               "also ask each address of each I2C bus whether anything answers");
   add_format_option(options, asked->format);
-  options.runs([asked] { info(asked->port, asked->format); });
+  options.runs([asked] { info(asked->port, asked->scan, asked->format); });
 }
 
 }  // namespace robosync::tool

@@ -2,6 +2,8 @@
 #include "runtime-m4/layers/sampler.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "runtime-m4/drivers/drivers.hpp"
 #include "runtime-m4/drivers/screen.hpp"
@@ -64,6 +66,14 @@ drivers::ServedBus DriverSampler::bus_of(const vm::Sensor& sensor) {
           .buses = buses_,
           .bus = sensor.bus,
           .address = static_cast<std::uint8_t>(sensor.address)};
+}
+
+// Many parts have registers, and for those this selects the first one and reads it.
+bool DriverSampler::probe(std::uint8_t bus, std::uint8_t address) {
+  std::byte got{};
+  return drivers::exchange(
+      {.kernel = kernel_, .board = board_, .buses = buses_, .bus = bus, .address = address},
+      std::array{std::byte{0}}, std::span(&got, 1), 1);
 }
 
 bool DriverSampler::serve_chip(const vm::Image& image, unsigned sensor) {

@@ -48,6 +48,8 @@ public:
   bool awaits() const override { return board_.buses_busy(); }
   bool serve_chip(const vm::Image& image, unsigned sensor) override;
   void lose_chip(unsigned sensor) override { outputs_.lose_chip(sensor); }
+  // Does anything answer at this address of an I2C bus? Takes a few milliseconds.  [thread]
+  bool probe(std::uint8_t bus, std::uint8_t address);
 
 private:
   drivers::ServedBus bus_of(const vm::Sensor& sensor);

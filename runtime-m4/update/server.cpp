@@ -145,6 +145,8 @@ void Server::inform(const link::Frame& frame) {
       return devices(frame.sequence);
     case MessageType::get_state:
       return state(frame);
+    case MessageType::probe:
+      return probe(frame);
     case MessageType::get_status:
       return status(frame.sequence);
     case MessageType::get_threads:
@@ -332,6 +334,15 @@ void Server::state(const link::Frame& frame) {
   link::State answer{};
   runtime_.fill_state(answer, request.first);
   send(MessageType::state, frame.sequence, link::wire_bytes(answer));
+}
+
+void Server::probe(const link::Frame& frame) {
+  link::Probe request{};
+  if (!link::read_payload(frame.payload, request)) {
+    ++bad_requests_;
+    return;
+  }
+  send(MessageType::probed, frame.sequence, link::wire_bytes(runtime_.probe(request)));
 }
 
 void Server::clear(const link::Frame& frame) {

@@ -90,6 +90,7 @@ private:
   void last_fault(std::uint8_t sequence);
   void devices(std::uint8_t sequence);
   void state(const link::Frame& frame);
+  void probe(const link::Frame& frame);
   void list_threads(std::uint8_t sequence);
   void read_image(const link::Frame& frame);
   void clear(const link::Frame& frame);
