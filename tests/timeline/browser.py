@@ -14,6 +14,7 @@ class Browser:
         self.profile = tempfile.TemporaryDirectory()
         self.last = 0
         self.events = []  # the names of those since the last page
+        self.errors = []  # of its script
 
     def __enter__(self):
         to_browser, write = os.pipe()
@@ -31,6 +32,7 @@ class Browser:
         (tab,) = [one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "page"]
         self.session = self.call("Target.attachToTarget", targetId=tab["targetId"], flatten=True)["sessionId"]
         self.call("Page.enable")
+        self.call("Runtime.enable")
         return self
 
     def __exit__(self, *_):
@@ -56,18 +58,25 @@ class Browser:
         self.orders.write(json.dumps(order).encode() + b"\0")
         self.orders.flush()
         while (answer := self.received()).get("id") != self.last:
-            self.events.append(answer.get("method"))
+            self.note(answer)
         if "error" in answer:
             raise RuntimeError(f"{method}: {answer['error']['message']}")
         return answer["result"]
+
+    def note(self, event):
+        self.events.append(event.get("method"))
+        if event.get("method") == "Runtime.exceptionThrown":
+            details = event["params"]["exceptionDetails"]
+            self.errors.append(details.get("exception", {}).get("description", details["text"]))
 
     def show(self, page, width=1300, height=1200):
         """`page`: a file. Returns when it is loaded and its script has run."""
         self.resize(width, height)
         self.events.clear()
+        self.errors.clear()
         self.call("Page.navigate", url=page.as_uri())
         while "Page.loadEventFired" not in self.events:
-            self.events.append(self.received().get("method"))
+            self.note(self.received())
 
     def resize(self, width, height=1200):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
@@ -89,3 +98,28 @@ class Browser:
     def picture(self, place):
         """What is to be seen in a rectangle, as PNG."""
         return base64.b64decode(self.call("Page.captureScreenshot", clip={**place, "scale": 1})["data"])
+
+    # What a person does with a mouse and a keyboard.
+
+    def mouse(self, kind, x, y, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def point(self, x, y):
+        self.mouse("mouseMoved", x, y)
+
+    def drag(self, x, y, to_x, to_y):
+        self.point(x, y)
+        self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        for share in (0.5, 1):
+            self.mouse("mouseMoved", x + (to_x - x) * share, y + (to_y - y) * share, button="left", buttons=1)
+        self.mouse("mouseReleased", to_x, to_y, button="left", clickCount=1)
+
+    def click(self, x, y):
+        self.drag(x, y, x, y)
+
+    def wheel(self, x, y, turned):
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=turned)
+
+    def key(self, key):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key)
