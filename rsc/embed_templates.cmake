@@ -2,6 +2,7 @@
 #   cmake -DOUT=FILE -DTEMPLATES=templates.txt -DEXAMPLES=FOLDER -P embed_templates.cmake
 # The path of the schema is removed: it is only valid in the repository.
 file(STRINGS ${TEMPLATES} lines REGEX "^[a-z]")
+include(${CMAKE_CURRENT_LIST_DIR}/pack.cmake)
 set(files_of "")
 set(rows "")
 foreach(line ${lines})
@@ -15,17 +16,20 @@ foreach(line ${lines})
     get_filename_component(file_name ${file} NAME)
     file(READ ${file} text)
     string(REGEX REPLACE "\n *\"\\$schema\": [^\n]*" "" text "${text}")
-    string(APPEND files_of "    {\"${file_name}\", R\"text(${text})text\"},\n")
+    embed(piece "${text}")
+    string(APPEND files_of "    {\"${file_name}\", ${piece}},\n")
   endforeach()
   string(APPEND files_of "};\n")
   string(APPEND rows "    {\"${name}\", ${said}, k_${name}},\n")
 endforeach()
+pack(packed)
 file(WRITE ${OUT} "// Made from ${TEMPLATES} by rsc/embed_templates.cmake.
 #include \"rsc/templates.hpp\"
 
 namespace robosync::tool {
 namespace {
 
+${packed}
 ${files_of}
 constexpr Template kTemplates[] = {
 ${rows}};

@@ -25,7 +25,7 @@ std::string key_of(std::string_view board) {
 }
 
 bool names(const Template& robot, std::string_view text) {
-  return file_of(robot, kRobot).text.find(text) != std::string_view::npos;
+  return file_of(robot, kRobot).text().find(text) != std::string_view::npos;
 }
 
 std::string those_for(std::string_view board) {
@@ -38,7 +38,7 @@ std::string those_for(std::string_view board) {
 }  // namespace
 
 std::string text_on(std::string_view board, const TemplateFile& file) {
-  std::string text(file.text);
+  std::string text(file.text());
   if (board.empty() || file.name != kRobot || text.find("\"board\"") != std::string::npos)
     return text;
   return text.insert(text.find('{') + 1, fmt::format("\n  {},", key_of(board)));
@@ -48,7 +48,7 @@ std::string why_not_on(std::string_view board, const Template& robot) {
   if (names(robot, "\"board\"") && !names(robot, key_of(board))) return "it is for another board";
   constexpr std::string_view kProgram = "robot.rsl";
   compiler::Result result =
-      compiler::compile({std::string(kProgram), std::string(file_of(robot, kProgram).text)},
+      compiler::compile({std::string(kProgram), std::string(file_of(robot, kProgram).text())},
                         {std::string(kRobot), text_on(board, file_of(robot, kRobot))},
                         {.algorithms = algorithm_modules()});
   judge(result, Judged::by_time);

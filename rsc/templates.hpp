@@ -1,13 +1,18 @@
-// The template robots (templates.txt) with their files, embedded so that the tool needs no other files.
+// The template robots (templates.txt) with their files.
 #pragma once
 
 #include <span>
 #include <string_view>
 
+#include "rsc/embedded.hpp"
+
 namespace robosync::tool {
 
 struct TemplateFile {
-  std::string_view name, text;
+  std::string_view name;
+  EmbeddedText content;
+
+  [[nodiscard]] std::string_view text() const { return content.text(); }
 };
 
 struct Template {

@@ -1,10 +1,10 @@
 # Writes the texts of texts.hpp into one C++ file:
 #   cmake -DOUT=FILE -DSOURCE=TOP_OF_THE_REPOSITORY -P embed_texts.cmake
 # The module itself is the one that docs/algorithms.md shows.
-function(embed file_name text)
-  string(APPEND rows "    {\"${file_name}\", R\"text(${text})text\"},\n")
-  set(rows "${rows}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/../pack.cmake)
+macro(add_file file_name)
+  string(APPEND rows "    {\"${file_name}\", ${piece}},\n")
+endmacro()
 
 file(READ ${SOURCE}/docs/algorithms.md page)
 string(REGEX MATCH "```c\n([^`]+)```" block "${page}")
@@ -12,22 +12,28 @@ set(module "${CMAKE_MATCH_1}")
 file(READ ${SOURCE}/runtime-m4/algorithms/robosync_module.h header)
 file(READ ${SOURCE}/rsc/modules/count_on_m4.c.in counting)
 set(rows "")
-embed(modules/heartbeat.c "${module}")
-embed(modules/robosync_module.h "${header}")
+embed(piece "${module}")
+add_file(modules/heartbeat.c)
+embed(piece "${header}")
+add_file(modules/robosync_module.h)
 file(GLOB files RELATIVE ${SOURCE}/rsc/new_module ${SOURCE}/rsc/new_module/*)
 foreach(file ${files})
   file(READ ${SOURCE}/rsc/new_module/${file} text)
-  embed(${file} "${text}")
+  embed(piece "${text}")
+  add_file(${file})
 endforeach()
+embed(counting_piece "${counting}")
+pack(packed)
 file(WRITE ${OUT} "// Made by rsc/modules/embed_texts.cmake.
 #include \"rsc/modules/texts.hpp\"
 
 namespace robosync::tool {
 namespace {
 
+${packed}
 constexpr TemplateFile kFiles[] = {
 ${rows}};
-constexpr std::string_view kCounting = R\"text(${counting})text\";
+constexpr EmbeddedText kCounting = ${counting_piece};
 
 }  // namespace
 
@@ -35,10 +41,10 @@ std::span<const TemplateFile> new_module_files() {
   return kFiles;
 }
 std::string_view module_header() {
-  return kFiles[1].text;
+  return kFiles[1].text();
 }
 std::string_view counting_program() {
-  return kCounting;
+  return kCounting.text();
 }
 
 }  // namespace robosync::tool

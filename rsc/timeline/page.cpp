@@ -28,11 +28,11 @@ std::string timeline_page(const std::string& title, Json run,
   const PageParts parts = page_parts();
   const std::array<std::pair<std::string_view, std::string>, 4> places = {
       {{"@TITLE@", in_html(title)},
-       {"@STYLE@", parts.style},
+       {"@STYLE@", std::string(parts.style.text())},
        {"@RUN@", in_script(run)},
-       {"@SCRIPT@", parts.script}}};
+       {"@SCRIPT@", std::string(parts.script.text())}}};
   std::string page;
-  std::string_view rest = parts.html;
+  std::string_view rest = parts.html.text();
   for (const auto& [place, text] : places) {
     const std::size_t at = rest.find(place);
     page.append(rest.substr(0, at)).append(text);

@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "rsc/embedded.hpp"
 #include "rsc/json.hpp"
 
 namespace robosync::tool {
 
 // The parts of the page, from this folder.
 struct PageParts {
-  const char *html, *style, *script;
+  EmbeddedText html, style, script;
 };
 [[nodiscard]] PageParts page_parts();
 

@@ -156,7 +156,7 @@ NewFiles files_of_module(const std::string& name) {
   };
   NewFiles files;
   for (const TemplateFile& file : new_module_files())
-    files.push_back({named(std::string(file.name)), named(std::string(file.text))});
+    files.push_back({named(std::string(file.name)), named(std::string(file.text()))});
   return files;
 }
 
