@@ -51,7 +51,8 @@ private:
                         first_of(*input),
                         module_->inputs.size(),
                         config(*input->channels.front().unit),
-                        module_->room};
+                        module_->room,
+                        input_span_};
     for (const ModuleOutput& output : module_->outputs) {
       sensor.channels.push_back(channel(name, output));
       sensor.channels.back().stale_ms = stale_as(*input);

@@ -52,6 +52,7 @@ struct AlgorithmConfig {
   std::vector<vm::Value>
       config;  // its parameters, all of them, and what it was taught: how many constants, and these
   std::uint8_t room = 0;  // vm::Sensor::room
+  Span input_span{};      // where robot.json names its input
 };
 
 // Makes a fed sensor the outputs of a module that runs on a companion computer.
@@ -144,6 +145,7 @@ struct ActuatorConfig {
   std::optional<PanelConfig> panel;
   std::optional<vm::DriveParameters> drive;
   std::optional<std::array<std::size_t, 2>> encoders;  // of the drive's wheels: in Robot::sensors
+  std::array<Span, 2> encoder_spans{};                 // where robot.json names them
   vm::Release on_release = vm::Release::hold;
   vm::Release safe = vm::Release::hold;
   const Unit* to_unit = nullptr;  // of TO and BY; null: it has no position
@@ -180,6 +182,7 @@ struct ActuatorConfig {
 struct GroupConfig {
   Spelled name;
   std::vector<std::size_t> members;  // indexes in Robot::actuators
+  std::vector<Span> member_spans{};  // where robot.json names them
 };
 
 struct BehaviorConfig {

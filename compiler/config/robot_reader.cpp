@@ -62,6 +62,7 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
       diagnostics.report(Code::E0101, "`" + *name + "` is in this group twice").label(item.span);
     } else {
       group.members.push_back(*place);
+      group.member_spans.push_back(item.span);
     }
   }
   robot.groups.push_back(std::move(group));

@@ -148,7 +148,9 @@ void read_wheel_encoders(const Fields& fields, std::span<const SensorConfig> sen
   if (difference != nullptr) slower = read_difference(*difference, diagnostics);
   if (!expect_kind(*encoders, json::Kind::array, diagnostics)) return;
   actuator.encoders = EncoderReader(sensors, actuator, diagnostics).read(*encoders);
-  if (actuator.encoders) actuator.bus = static_cast<std::uint8_t>(slower);
+  if (!actuator.encoders) return;
+  actuator.bus = static_cast<std::uint8_t>(slower);
+  actuator.encoder_spans = {encoders->items[0].span, encoders->items[1].span};
 }
 
 }  // namespace robosync::compiler

@@ -44,6 +44,7 @@ Collector::Collector(const Project& project)
 
 void Collector::collect() {
   collect_robot();
+  collect_references();
   for (const ast::Tree* tree : project_.trees)
     for (const ast::Item& one : tree->items)
       item(one);
@@ -90,6 +91,34 @@ void Collector::collect_robot() {
     add(SymbolKind::actuator, robot.actuators[a].name, a);
   for (std::size_t g = 0; g < robot.groups.size(); ++g)
     add(SymbolKind::group, robot.groups[g].name, g);
+}
+
+// Names of parts in entries of other parts.
+void Collector::collect_references() {
+  const Robot& robot = project_.robot;
+  const auto refers = [this](Span place, SymbolKind kind, const Spelled& name, std::size_t owner) {
+    occurrences.push_back({place, intern({kind, name.text, name.span, true, owner}), false});
+  };
+  const auto to_sensor = [&](Span place, std::size_t s) {
+    refers(place, SymbolKind::sensor, robot.sensors[s].name, s);
+  };
+  const auto to_actuator = [&](Span place, std::size_t a) {
+    refers(place, SymbolKind::actuator, robot.actuators[a].name, a);
+  };
+  for (const SensorConfig& sensor : robot.sensors)
+    if (sensor.algorithm) to_sensor(sensor.algorithm->input_span, sensor.algorithm->input);
+  for (const ActuatorConfig& actuator : robot.actuators)
+    for (std::size_t i = 0; actuator.encoders && i < actuator.encoders->size(); ++i)
+      to_sensor(actuator.encoder_spans.at(i), actuator.encoders->at(i));
+  for (const GroupConfig& group : robot.groups)
+    for (std::size_t i = 0; i < group.member_spans.size(); ++i)
+      to_actuator(group.member_spans[i], group.members[i]);
+  for (const BehaviorConfig& behavior : robot.behaviors) {
+    if (behavior.action) to_actuator(behavior.action_span, *behavior.action);
+    if (behavior.action_group)
+      refers(behavior.action_span, SymbolKind::group, robot.groups[*behavior.action_group].name,
+             *behavior.action_group);
+  }
 }
 
 // robot.json may describe a BEHAVIOR, too, and uses its name there.

@@ -28,6 +28,7 @@ private:
   void declare(SymbolKind kind, const ast::Name& name, std::string_view within = {});
   void refer(const ast::Name& name, Symbol symbol);
   void collect_robot();
+  void collect_references();
   void collect_behaviors();
 
   // ---- looking up; false: the name is not of this kind

@@ -27,6 +27,7 @@ struct Desk {
 [[nodiscard]] Json hover(Desk desk, const Json& params);
 [[nodiscard]] Json definition(Desk desk, const Json& params);
 [[nodiscard]] Json references(Desk desk, const Json& params);
+[[nodiscard]] Json highlights(Desk desk, const Json& params);
 [[nodiscard]] Json prepare_rename(Desk desk, const Json& params);
 [[nodiscard]] Json rename(Desk desk, const Json& params);
 [[nodiscard]] Json document_symbols(Desk desk, const Json& params);

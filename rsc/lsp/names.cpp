@@ -1,58 +1,19 @@
-// Requests about a name: what it is, where it is declared and used, and whether it can be renamed.
+// Requests about a name: what it is, and where it is declared and used.
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "compiler/query/configuration.hpp"
 #include "compiler/query/describe.hpp"
-#include "compiler/query/rename.hpp"
-#include "rsc/lsp/answers.hpp"
-#include "rsc/lsp/uris.hpp"
+#include "rsc/lsp/meant.hpp"
 
 namespace robosync::tool::lsp {
 
 namespace query = compiler::query;
-using compiler::SourceFile, compiler::SourceMap;
+using compiler::SourceFile, compiler::SourceMap, compiler::Span;
 
 namespace {
-
-struct Meant {
-  Asked asked;
-  const query::Occurrence* name = nullptr;  // never null
-  const query::Symbol* symbol = nullptr;    // likewise
-};
-
-std::optional<Meant> meant_by(const Asked& asked) {
-  const query::Symbols& symbols = asked.checked->symbols();
-  const query::Occurrence* const name = symbols.at(asked.file, asked.offset);
-  if (name == nullptr) return std::nullopt;
-  return Meant{asked, name, &symbols.all().at(name->symbol)};
-}
-
-std::optional<Meant> meant_at(Desk desk, const Json& params) {
-  const auto asked = asked_at(desk, params);
-  return asked ? meant_by(*asked) : std::nullopt;
-}
-
-// The same position in every program that the text is part of (a robot.json, a module).
-std::vector<Meant> meant_everywhere(Desk desk, const Json& params) {
-  std::vector<Meant> result;
-  const auto first = asked_at(desk, params);
-  const auto path = path_of(address_in(params));
-  if (!first || !path) return result;
-  for (const Checked* const checked : desk.workspace.users_of(*path)) {
-    const auto file = checked->file(*path);
-    const auto meant = meant_by({checked, file.value(), first->offset});
-    if (meant) result.push_back(*meant);
-  }
-  return result;
-}
-
-const SourceMap& sources_of(const Asked& asked) {
-  return asked.checked->result().sources;
-}
 
 // ---- hover
 
@@ -77,7 +38,7 @@ std::string plain(const query::Description& about, const std::string& name) {
 std::string uses_of(const std::vector<Meant>& everywhere) {
   std::vector<std::string> uses;
   for (const Meant& meant : everywhere)
-    for (const query::Occurrence& one : meant.asked.checked->symbols().of(meant.name->symbol)) {
+    for (const query::Occurrence& one : places_of(meant)) {
       const SourceFile& source = sources_of(meant.asked).file(one.span.file);
       std::string use =
           fmt::format("{}:{}", std::string_view(source.name()).substr(source.name().rfind('/') + 1),
@@ -112,7 +73,7 @@ Json hover(Desk desk, const Json& params) {
   const bool in_robot = asked->file == compiler::kConfigurationFile;
   if (const auto meant = meant_by(*asked)) {
     query::Description about = query::describe(*meant->symbol, project);
-    if (in_robot) about.text += uses_of(meant_everywhere(desk, params));
+    if (in_robot) about.text += uses_of(meant_here(desk, params));
     return hover_json(desk, {meant->symbol->name, meant->name->span, std::move(about)}, *asked);
   }
   if (in_robot) {
@@ -132,72 +93,49 @@ Json hover(Desk desk, const Json& params) {
 }
 
 Json definition(Desk desk, const Json& params) {
-  const auto meant = meant_at(desk, params);
-  if (!meant || !meant->symbol->declared) return nullptr;
-  const SourceMap& sources = sources_of(meant->asked);
-  return location_json(sources, without_quotes(sources, *meant->symbol->declared), desk.workspace);
+  const auto all = meant_here(desk, params);
+  if (all.empty() || !all.front().symbol->declared) return nullptr;
+  const SourceMap& sources = sources_of(all.front().asked);
+  const Span declared = *all.front().symbol->declared;
+  return location_json(sources, without_quotes(sources, declared), desk.workspace);
 }
+
+namespace {
+
+void add_new(Json& list, Json item) {
+  if (std::ranges::find(list, item) == list.end()) list.push_back(std::move(item));
+}
+
+}  // namespace
 
 Json references(Desk desk, const Json& params) {
   const bool declarations = params.at("context").at("includeDeclaration").get<bool>();
   Json result = Json::array();
   for (const Meant& meant : meant_everywhere(desk, params)) {
     const SourceMap& sources = sources_of(meant.asked);
-    for (const query::Occurrence& one : meant.asked.checked->symbols().of(meant.name->symbol)) {
+    for (const query::Occurrence& one : places_of(meant)) {
       if (one.declares && !declarations) continue;
       Json location = location_json(sources, without_quotes(sources, one.span), desk.workspace);
-      const bool known = location.is_null() || std::ranges::find(result, location) != result.end();
-      if (!known) result.push_back(std::move(location));
+      if (!location.is_null()) add_new(result, std::move(location));
     }
   }
   return result;
 }
 
-// ---- rename
-
-namespace {
-
-// Throws Refusal if it cannot be renamed.
-Meant renamed_at(Desk desk, const Json& params) {
-  const auto everywhere = meant_everywhere(desk, params);
-  if (everywhere.empty()) throw Refusal("there is no name here");
-  const Meant& meant = everywhere.front();
-  const SourceMap& sources = sources_of(meant.asked);
-  std::string why = query::why_not_renamed(*meant.symbol, meant.asked.file, sources);
-  if (why.empty() && meant.asked.file != compiler::kProgramFile)
-    why = "names of robot.json and of modules are changed by hand: other programs may use them";
-  for (const Meant& other : everywhere)
-    if (why.empty() && other.asked.file != compiler::kProgramFile)
-      why = fmt::format("{} uses this file as a module", sources_of(other.asked).file(0).name());
-  if (!why.empty()) throw Refusal(why);
-  return meant;
-}
-
-}  // namespace
-
-Json prepare_rename(Desk desk, const Json& params) {
-  const Meant meant = renamed_at(desk, params);
-  const SourceMap& sources = sources_of(meant.asked);
-  return {{"range", range_json(sources, meant.name->span, desk.workspace.encoding())},
-          {"placeholder", sources.text(meant.name->span)}};
-}
-
-Json rename(Desk desk, const Json& params) {
-  const std::string name = params.at("newName").get<std::string>();
-  const Meant meant = renamed_at(desk, params);
-  const query::Symbols& symbols = meant.asked.checked->symbols();
-  const std::string why =
-      query::why_not_called(name, *meant.symbol, meant.asked.checked->project(), symbols);
-  if (!why.empty()) throw Refusal(why);
-  const SourceMap& sources = sources_of(meant.asked);
-  Json changes = Json::object();
-  for (const query::Occurrence& one : symbols.of(meant.name->symbol)) {
-    const Json location = location_json(sources, without_quotes(sources, one.span), desk.workspace);
-    if (location.is_null()) continue;
-    changes[location["uri"].get<std::string>()].push_back(
-        {{"range", location["range"]}, {"newText", name}});
+// In this text only.
+Json highlights(Desk desk, const Json& params) {
+  constexpr int kRead = 2, kWrite = 3;
+  Json result = Json::array();
+  for (const Meant& meant : meant_here(desk, params)) {
+    const SourceMap& sources = sources_of(meant.asked);
+    for (const query::Occurrence& one : places_of(meant)) {
+      if (one.span.file != meant.asked.file) continue;
+      const Span span = without_quotes(sources, one.span);
+      add_new(result, {{"range", range_json(sources, span, desk.workspace.encoding())},
+                       {"kind", one.declares ? kWrite : kRead}});
+    }
   }
-  return {{"changes", std::move(changes)}};
+  return result;
 }
 
 }  // namespace robosync::tool::lsp

@@ -18,8 +18,7 @@ namespace {
 
 using compiler::FileId, compiler::SourceFile;
 
-// The most programs, and entries of a folder, that are looked at for a lone robot.json.
-constexpr std::size_t kMostPrograms = 32;
+// The most entries of a folder that are looked at for a lone robot.json.
 constexpr std::size_t kMostEntries = 2000;
 
 bool is_program(const fs::path& path) {
@@ -158,8 +157,7 @@ const Document* Workspace::find(const fs::path& path) const {
 
 // ---- programs
 
-void Workspace::add_users_of_configuration(const fs::path& path,
-                                           std::set<std::string>& programs) const {
+std::set<std::string> Workspace::users_of_configuration(const fs::path& path) const {
   std::error_code error;
   std::set<std::string> users;
   fs::directory_iterator entry(path.parent_path(), error);
@@ -173,7 +171,7 @@ void Workspace::add_users_of_configuration(const fs::path& path,
   for (const auto& [name, document] : documents_)
     if (is_program(name) && configuration_of(name, *this) == path) users.insert(name);
   if (users.empty() && path.filename() == "robot.json") users.insert(path.string());
-  programs.merge(users);
+  return users;
 }
 
 std::set<std::string> Workspace::programs() const {
@@ -181,7 +179,7 @@ std::set<std::string> Workspace::programs() const {
   for (const auto& [name, document] : documents_) {
     if (is_in_library_folder(name) || !path_of(document.uri)) continue;
     if (is_program(name)) result.insert(name);
-    if (fs::path(name).extension() == ".json") add_users_of_configuration(name, result);
+    if (fs::path(name).extension() == ".json") result.merge(users_of_configuration(name));
   }
   return result;
 }
@@ -190,6 +188,33 @@ const Checked& Workspace::checked(const std::string& program) {
   auto& known = checked_[program];
   if (known == nullptr) known = std::make_unique<const Checked>(compile_program(program, *this));
   return *known;
+}
+
+namespace {
+
+class OtherTexts : public Texts {
+public:
+  OtherTexts(const Texts& texts, const std::map<std::string, std::string>& others)
+      : texts_(texts), others_(others) {}
+  [[nodiscard]] std::string read(const fs::path& path) const override {
+    const auto other = others_.find(path.lexically_normal().string());
+    return other != others_.end() ? other->second : texts_.read(path);
+  }
+  [[nodiscard]] bool has(const fs::path& path) const override { return texts_.has(path); }
+
+private:
+  const Texts& texts_;
+  const std::map<std::string, std::string>& others_;
+};
+
+}  // namespace
+
+Checked Workspace::checked_with(const Checked& program,
+                                const std::map<std::string, std::string>& texts) const {
+  const compiler::SourceMap& sources = program.result().sources;
+  const std::string& name = sources.file(compiler::kProgramFile).name();
+  const std::string& alone = sources.file(compiler::kConfigurationFile).name();
+  return compile_program(name.empty() ? alone : name, OtherTexts(*this, texts));
 }
 
 std::vector<const Checked*> Workspace::checked_programs() {

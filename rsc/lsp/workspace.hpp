@@ -50,6 +50,9 @@ private:
   mutable std::optional<compiler::query::Symbols> symbols_;
 };
 
+// The most programs that are looked at for one robot.json.
+inline constexpr std::size_t kMostPrograms = 32;
+
 class Workspace : public Texts {
 public:
   void set_encoding(Encoding encoding) { encoding_ = encoding; }
@@ -73,6 +76,12 @@ public:
   [[nodiscard]] const Checked& checked(const std::string& program);
   // All programs, except modules that another one uses.
   [[nodiscard]] std::vector<const Checked*> checked_programs();
+  // The programs on disk and in the editor that use a robot.json; itself if there is none. At most kMostPrograms on disk.
+  [[nodiscard]] std::set<std::string> users_of_configuration(
+      const std::filesystem::path& path) const;
+  // The program as if some of its files had other texts, by their names.
+  [[nodiscard]] Checked checked_with(const Checked& program,
+                                     const std::map<std::string, std::string>& texts) const;
   // The programs that `path` is part of; `path` itself first, if it is a program.
   [[nodiscard]] std::vector<const Checked*> users_of(const std::filesystem::path& path);
 
@@ -82,8 +91,6 @@ public:
 
 private:
   void changed(const std::string& name);
-  void add_users_of_configuration(const std::filesystem::path& path,
-                                  std::set<std::string>& programs) const;
 
   Encoding encoding_ = Encoding::utf16;
   std::map<std::string, Document> documents_;  // by path, or by URI if there is none

@@ -104,7 +104,7 @@ check("a session: diagnostics, completion, hover, definition, rename, formatting
   assert.deepEqual(await session.diagnostics(3), []);
   assert.match((await session.ask(lsp.HoverRequest.type, 1, at + 1)).contents.value, /a channel of the sensor/);
   assert.match((await session.ask(lsp.DefinitionRequest.type, 1, at + 1)).uri, /robot\.json$/);
-  await assert.rejects(session.ask(lsp.RenameRequest.type, 1, at + 1, { newName: "x" }), /robot\.json/);
+  await assert.rejects(session.ask(lsp.RenameRequest.type, 1, at + 1, { newName: "when" }), /is a word of RSL/);
   const edits = await session.line.sendRequest(lsp.DocumentFormattingRequest.type, {
     textDocument: { uri: session.uri }, options: { tabSize: 2, insertSpaces: true } });
   assert.ok(Array.isArray(edits));
@@ -136,6 +136,35 @@ check("robot.json: completion, hover and outline, while it is no JSON yet", asyn
   assert.deepEqual(touch.selectionRange, ranged("touch", 5));
   assert.deepEqual(touch.range.start, ranged('{"name": "touch"', 0).start);
   assert.equal(touch.range.end.character, text.length);
+  await session.end();
+});
+
+check("a name of robot.json: its places and its new name, from both files", async () => {
+  const session = new Session();
+  await session.begin();
+  const robot = JSON.stringify({ ...JSON.parse(ROBOT), groups: { arms: ["arm"] } });
+  fs.writeFileSync(path.join(session.folder, "robot.json"), robot);
+  const other = path.join(session.folder, "other.rsl");
+  fs.writeFileSync(other, "% 🤖\nWHEN touch LEVEL > 3 DO MOVE arm TO 9deg\nEND\n");
+  await session.open("% 🤖\nWHEN touch LEVEL > 5 DO MOVE arm TO 30deg\nEND\n");
+  await session.openRobot(robot);
+  const spot = (uri, line, character) => ({ textDocument: { uri }, position: { line, character } });
+  const inGroup = spot(session.robot, 0, robot.lastIndexOf("arm"));
+  const inProgram = spot(session.uri, 1, "WHEN touch LEVEL > 5 DO MOVE ".length);
+  for (const place of [inGroup, inProgram]) {
+    const found = await session.line.sendRequest(lsp.ReferencesRequest.type, { ...place, context: { includeDeclaration: true } });
+    assert.deepEqual(found.map((one) => path.basename(one.uri)).sort(), ["other.rsl", "robot.json", "robot.json", "robot.rsl"]);
+    const { changes } = await session.line.sendRequest(lsp.RenameRequest.type, { ...place, newName: "paw" });
+    assert.deepEqual(Object.values(changes).map((edits) => edits.length).sort(), [1, 1, 2]);
+    assert.ok(changes[pathToFileURL(other).toString()].every((edit) => edit.newText === "paw" && edit.range.start.line === 1));
+    await assert.rejects(session.line.sendRequest(lsp.RenameRequest.type, { ...place, newName: "touch" }), /already/);
+  }
+  assert.equal((await session.line.sendRequest(lsp.DefinitionRequest.type, inGroup)).uri, session.robot);
+  const prepared = await session.line.sendRequest(lsp.PrepareRenameRequest.type, inGroup);
+  assert.deepEqual(prepared, { placeholder: "arm", range: {
+    start: inGroup.position, end: { line: 0, character: inGroup.position.character + 3 } } });
+  const shown = await session.line.sendRequest(lsp.DocumentHighlightRequest.type, inGroup);
+  assert.deepEqual(shown.map((one) => one.kind), [lsp.DocumentHighlightKind.Write, lsp.DocumentHighlightKind.Read]);
   await session.end();
 });
 

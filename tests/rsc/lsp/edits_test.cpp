@@ -112,8 +112,9 @@ const Pieces kPiecesOfRobot = {u"{\"name\": \"touch\", \"device\": \"hc-sr04\"}"
                                u""};
 
 constexpr const char* kQuestions[] = {
-    "completion",     "hover",      "definition", "references",          "prepareRename", "rename",
-    "documentSymbol", "formatting", "codeAction", "semanticTokens/full", "foldingRange"};
+    "completion",          "hover",       "definition",     "references", "documentHighlight",
+    "prepareRename",       "rename",      "documentSymbol", "formatting", "codeAction",
+    "semanticTokens/full", "foldingRange"};
 
 std::size_t number_of_edits() {
   const char* const wanted = std::getenv("ROBOSYNC_EDITS");

@@ -240,7 +240,6 @@ TEST_CASE(
   const auto why = [&](const std::string& marked, const std::string& name) {
     return editor.at("rename", marked, {{"newName", name}}).value("message", "");
   };
-  CHECK_THAT(why("WHEN tou|ch LEVEL > 3 DO STOP ALL\nEND\n", "x"), Contains("robot.json"));
   CHECK_THAT(why("WHEN touch LEVEL > 3 DO MO|VE arms SLOWLY\nEND\n", "x"),
              Contains("belongs to a device"));
   CHECK_THAT(why("WHEN AB|S(touch LEVEL) > 3 DO STOP ALL\nEND\n", "x"), Contains("word of RSL"));
