@@ -78,7 +78,9 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/lost_heads.cpp
   syntax/misplaced_words.cpp
   syntax/missing.cpp
+  syntax/one_line_blocks.cpp
   syntax/parser.cpp
+  syntax/pasted.cpp
   syntax/repair.cpp
   syntax/robot_lines.cpp
   syntax/unit_apart.cpp

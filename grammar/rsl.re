@@ -57,6 +57,7 @@ bool LexerState::step() {
     "=<"                            { matched(); instead(Kinds::LESS_EQUAL, "<="); return true; }
     "=>"                            { matched(); instead(Kinds::GREATER_EQUAL, ">="); return true; }
     "=!"                            { matched(); instead(Kinds::NOT_EQUAL, "<>"); return true; }
+    "=/=" | "~="                    { matched(); instead(Kinds::NOT_EQUAL, "<>"); return true; }
     "&&" | "&"                      { matched(); instead(Kinds::AND, "AND"); return true; }
     "||" | "|"                      { matched(); instead(Kinds::OR, "OR"); return true; }
     "!"                             { matched(); instead(Kinds::NOT, "NOT "); return true; }

@@ -46,7 +46,12 @@ const std::vector<Key>& known_keys() {
 
 Fields::Fields(const json::Value& value, Object object, Diagnostics& diagnostics)
     : value_(value), diagnostics_(diagnostics) {
-  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
+  const bool named = object == Object::sensor || object == Object::actuator ||
+                     object == Object::behavior || object == Object::algorithm;
+  const std::string name = value.kind == json::Kind::string ? value.text : "…";
+  if (!expect_kind(value, json::Kind::object, diagnostics,
+                   named ? "{\"name\": \"" + name + "\"}" : std::string()))
+    return;
   report_repeated_keys(value, diagnostics);
   for (const json::Member& member : value.members)
     check_key(member, object);

@@ -307,6 +307,43 @@ bool is_extra_comma(const Mistake& mistake, const WrongText& wrong, Diagnostics&
   return true;
 }
 
+// A whole file of another format.
+bool is_other_format(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  if (mistake.good_until > 0 || mistake.open_span) return false;
+  const std::string_view behind = ascii::trimmed(mistake.text.substr(wrong.end));
+  const bool word = is_word(mistake.text[wrong.begin]);
+  std::string_view format;
+  if (mistake.text[wrong.begin] == '<') format = "XML";
+  if (word && (behind.starts_with(':') || mistake.text.starts_with("---"))) format = "YAML";
+  const bool assigned = word && behind.starts_with('=');
+  if (format.empty() && !assigned) return false;
+  Diagnostic& message =
+      diagnostics
+          .report(Code::E0201,
+                  assigned
+                      ? "a robot.json is an object alone: nothing stands before it"
+                      : "this looks like " + std::string(format) + ", but a robot.json is JSON")
+          .label(span_of(mistake, wrong.begin, wrong.end));
+  if (assigned)
+    message.helps("begin with `{`");
+  else
+    message.helps("such as `{\"sensors\": [{\"name\": \"touch\", \"type\": \"VIRTUAL\"}]}`");
+  return true;
+}
+
+// `[0deg, 90deg]`
+bool is_bare_measure(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const std::string word(mistake.text.substr(wrong.begin, wrong.end - wrong.begin));
+  const std::size_t unit = std::min(word.find_first_not_of("-0123456789."), word.size());
+  if (unit == 0 || unit == word.size() || find_unit(std::string_view(word).substr(unit)) == nullptr)
+    return false;
+  const std::string quoted = "\"" + word + "\"";
+  diagnostics.report(Code::E0201, "a number with a unit needs double quotes in JSON")
+      .label(span_of(mistake, wrong.begin, wrong.end), "write `" + quoted + "`")
+      .fix(span_of(mistake, wrong.begin, wrong.end), quoted, Applicability::likely);
+  return true;
+}
+
 bool is_mended(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   return is_in_curly_quotes(mistake, wrong, diagnostics) ||
          is_unclosed_string(mistake, wrong, diagnostics) ||
@@ -352,7 +389,8 @@ void report_mistake(const Mistake& mistake, Diagnostics& diagnostics) {
       d.fix(place, ",", Applicability::likely);
     else
       mend(mistake, place, ",", d);
-  } else {
+  } else if (!is_other_format(mistake, wrong, diagnostics) &&
+             !is_bare_measure(mistake, wrong, diagnostics)) {
     diagnostics.report(Code::E0201, describe_character(mistake, wrong)).label(here);
   }
 }

@@ -43,8 +43,13 @@ void report_unknown_actuator(const json::Value& value, const Robot& robot, bool 
     d.helps("actuators: " + list_names(candidates));
 }
 
-void read_group(const json::Member& member, const NameIndex& actuators, Robot& robot,
-                Diagnostics& diagnostics) {
+bool is_group(const json::Value& groups, std::string_view name) {
+  return std::ranges::any_of(groups.members,
+                             [name](const json::Member& one) { return same_name(one.key, name); });
+}
+
+void read_group(const json::Member& member, const json::Value& groups, const NameIndex& actuators,
+                Robot& robot, Diagnostics& diagnostics) {
   GroupConfig group{{member.key, member.key_span}, {}};
   check_name(group.name, diagnostics);
   const std::string example = "\"" + member.key + "\": [\"left_arm\", \"right_arm\"]";
@@ -56,7 +61,11 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
     const auto name = read_text(item, diagnostics);
     if (!name) continue;
     const auto place = actuators.find(*name);
-    if (!place) {
+    if (!place && is_group(groups, *name)) {
+      diagnostics.report(Code::E0205, "`" + *name + "` is a group, and a group has actuators only")
+          .label(item.span)
+          .helps("name its members instead");
+    } else if (!place) {
       report_unknown_actuator(item, robot, false, diagnostics);
     } else if (!members.insert(*place).second) {
       diagnostics.report(Code::E0101, "`" + *name + "` is in this group twice").label(item.span);
@@ -69,14 +78,16 @@ void read_group(const json::Member& member, const NameIndex& actuators, Robot& r
 }
 
 void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostics) {
-  if (!expect_kind(value, json::Kind::object, diagnostics)) return;
+  if (!expect_kind(value, json::Kind::object, diagnostics,
+                   "\"groups\": {\"arms\": [\"left_arm\", \"right_arm\"]}"))
+    return;
   report_repeated_keys(value, diagnostics);
   const NameIndex actuators = index_of(robot.actuators);
   std::set<std::string_view> known;
   for (const json::Member& member : value.members) {
     const bool good = member.value.kind == json::Kind::array;
     const bool repeated = good ? !known.insert(member.key).second : known.contains(member.key);
-    if (!repeated) read_group(member, actuators, robot, diagnostics);
+    if (!repeated) read_group(member, value, actuators, robot, diagnostics);
   }
 }
 

@@ -57,7 +57,8 @@ void add_label(const json::Value& item, NameIndex& known, ChannelConfig& channel
 
 // ["released", "pressed"]: 0 is released, 1 is pressed.
 void read_labels(const json::Value& value, ChannelConfig& channel, Diagnostics& diagnostics) {
-  if (!expect_kind(value, json::Kind::array, diagnostics)) return;
+  if (!expect_kind(value, json::Kind::array, diagnostics, "\"labels\": [\"low\", \"high\"]"))
+    return;
   channel.labels.clear();
   channel.truth = false;
   NameIndex known;

@@ -151,8 +151,14 @@ std::optional<std::int64_t> read_whole(const json::Value& value, std::int64_t lo
   if (!is_number_or_text(value, "a whole number", diagnostics)) return std::nullopt;
   const auto number = parse_whole(value.text);
   if (!number) {
-    diagnostics.report(Code::E0204, "this must be a whole number, like 5 or \"0x48\"")
-        .label(value.span);
+    Diagnostic& d =
+        diagnostics.report(Code::E0204, "this must be a whole number, like 5 or \"0x48\"")
+            .label(value.span);
+    // "D9", "GPIO 9": as a board calls its pin
+    const std::size_t digits = value.text.find_first_of("0123456789");
+    const bool ends = value.text.find_first_not_of("0123456789", digits) == std::string::npos;
+    if (digits != std::string::npos && ends && ascii::is_letter(value.text.front()))
+      d.helps("write the number alone, such as `" + value.text.substr(digits) + "`");
     return std::nullopt;
   }
   if (*number >= low && *number <= high) return number;

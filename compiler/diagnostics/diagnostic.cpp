@@ -246,21 +246,25 @@ void Diagnostics::doubt_names(const SourceMap& sources) {
   }
 }
 
-// A name that is misspelt in its declaration is unknown at every use: reports it once.
+// A name that is misspelt in its declaration is unknown at every use, and whoever writes a sign of another language writes it again:
+// reports it once.
 void Diagnostics::merge_repeated() {
   constexpr std::size_t most = 4;  // places shown
   std::map<std::string, std::size_t> first;
   std::vector<Diagnostic> merged;
   for (Diagnostic& diagnostic : all_) {
     const auto [known, added] = first.emplace(diagnostic.message, merged.size());
-    if (diagnostic.code != Code::E0501 || added || merged[known->second].code != Code::E0501) {
+    const bool is_name = diagnostic.code == Code::E0501;
+    const bool merges = (is_name || diagnostic.code == Code::E0002) && !added &&
+                        merged[known->second].code == diagnostic.code;
+    if (!merges) {
       merged.push_back(std::move(diagnostic));
       continue;
     }
     Diagnostic& one = merged[known->second];
     for (const Fix& fix : diagnostic.fixes)
-      one.fix(fix.span, fix.replacement, Applicability::likely);
-    make_likely(one);
+      one.fix(fix.span, fix.replacement, is_name ? Applicability::likely : fix.applicability);
+    if (is_name) make_likely(one);
     if (++one.repeated < most) one.label(anchor(diagnostic), "and here", false);
   }
   for (Diagnostic& one : merged)

@@ -20,6 +20,8 @@
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/lexer.hpp"
 #include "compiler/syntax/lexer_state.hpp"
+#include "compiler/syntax/one_line_blocks.hpp"
+#include "compiler/syntax/pasted.hpp"
 #include "compiler/syntax/word_list.hpp"
 
 namespace robosync::compiler {
@@ -39,10 +41,13 @@ constexpr std::size_t kOtherCall = kHints.size() - 1;
 
 constexpr std::string_view kForeignHeads = "switch class async try";
 constexpr std::string_view kHatEnds = "clicked pressed";
+// What follows the number of a line in BASIC, and no number in RSL.
+constexpr std::string_view kNumbered = "print let goto gosub input rem next dim if return";
 
 // A line of the text, from its first to its last sign that is no blank.
 struct TextLine {
-  std::string_view text, word;  // its first word
+  std::string_view text, word;  // its first word, behind the number of a line of BASIC
+  std::size_t number = 0;       // how long that is, with the blanks behind it
   std::uint32_t begin = 0;
   std::size_t indentation = 0;
   const Keyword* keyword = nullptr;  // its first word
@@ -52,7 +57,7 @@ struct TextLine {
   [[nodiscard]] bool begins_with(std::initializer_list<TokenKind> kinds) const {
     return keyword != nullptr && is_one_of(keyword->kind, kinds);
   }
-  [[nodiscard]] std::string_view behind_word() const { return text.substr(word.size()); }
+  [[nodiscard]] std::string_view behind_word() const { return text.substr(number + word.size()); }
   [[nodiscard]] std::string_view last_word() const {
     return text.substr(text.find_last_of(" \t") + 1);
   }
@@ -71,13 +76,22 @@ struct TextLine {
   }
 };
 
+// Of `10 ` in `10 PRINT "hi"`; 0 if there is none.
+std::size_t number_length(std::string_view text) {
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const std::size_t word = std::min(text.find_first_not_of(" \t", digits), text.size());
+  return digits > 0 && word > digits && ascii::is_letter(text.substr(word).front()) ? word : 0;
+}
+
 TextLine line_of(const SourceFile& source, std::uint32_t number) {
   TextLine line;
   const std::string_view whole = source.line(number);
   line.text = ascii::trimmed(whole);
   line.indentation = static_cast<std::size_t>(line.text.data() - whole.data());
   line.begin = source.line_start(number) + static_cast<std::uint32_t>(line.indentation);
-  line.word = line.text.substr(0, word_length(line.text));
+  line.number = number_length(line.text);
+  const std::string_view words = line.text.substr(line.number);
+  line.word = words.substr(0, word_length(words));
   line.keyword = find_keyword(line.word);
   return line;
 }
@@ -128,6 +142,7 @@ private:
 
   // Can no line of RSL look like this?
   [[nodiscard]] bool is_sure(const TextLine& line) const {
+    if (line.number > 0) return has_word(kNumbered, line.word);
     if (line.keyword != nullptr && line.called() == line.word) return false;
     if (line.begins_with({Kinds::FROM})) return line.text.find(" import ") != std::string::npos;
     if (line.begins_with({Kinds::FOR})) return ascii::trimmed(line.behind_word()).starts_with('(');
@@ -166,6 +181,7 @@ private:
 
   // May it belong to the lines of another language that are next to it?
   [[nodiscard]] bool is_doubtful(const TextLine& line) const {
+    if (line.number > 0) return true;
     if (line.empty() || is_verb(line.word)) return false;
     if (line.keyword != nullptr &&
         !line.begins_with({Kinds::IF, Kinds::WHILE, Kinds::FOR, Kinds::ELSE, Kinds::LET}))
@@ -321,7 +337,7 @@ bool may_be_foreign(const Tokens& tokens, const SourceFile& source) {
     if (named && last && has_word(kHatEnds, word)) return true;
     if (!starts_line(tokens, at)) continue;
     const std::string_view rest = source.text().substr(tokens[at].span.end, 1);
-    if (is_one_of(tokens[at].kind, {Kinds::FROM, Kinds::FOR}) ||
+    if (is_one_of(tokens[at].kind, {Kinds::FROM, Kinds::FOR, Kinds::QUANTITY}) ||
         (named && (rest == "(" || rest == "." || has_word(kForeignHeads, word))))
       return true;
   }
@@ -375,6 +391,9 @@ Tokens lex_but_foreign_text(const SourceFile& source, FileId file, const Vocabul
     if (!places.empty()) text.report(places, diagnostics);
     leave_out(tokens, places);
   }
+  for (const auto& more : {leave_out_pasted(tokens, source, diagnostics),
+                           mend_one_line_blocks(tokens, source, said, diagnostics)})
+    places.insert(places.end(), more.begin(), more.end());
   for (const Diagnostic& diagnostic : said.all()) {
     const std::uint32_t at = diagnostic.labels.front().span.begin;
     if (std::ranges::none_of(places, [at](Span one) { return one.begin <= at && at < one.end; }))

@@ -11,6 +11,7 @@
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/lexer_state.hpp"
+#include "compiler/syntax/word_list.hpp"
 
 namespace robosync::compiler {
 
@@ -296,6 +297,21 @@ bool LexerState::apostrophe_in_text() {
   return true;
 }
 
+// `f"n is {n}"`: the letter goes.
+void LexerState::text_of_python() {
+  if (tokens_.empty() || tokens_.back().kind != Kinds::NAME || tokens_.back().span.end != start_)
+    return;
+  const Span letter = tokens_.back().span;
+  if (!has_word("F B R U", text_.substr(letter.begin, letter.end - letter.begin))) return;
+  tokens_.pop_back();
+  Diagnostic& message = report(Code::E0003, "a text has no letter before its quotes").label(letter);
+  const std::string_view text = lexeme();
+  const std::size_t open = text.find('{'), close = text.find('}');
+  if (open == std::string_view::npos || close == std::string_view::npos || close < open) return;
+  message.helps("a value stands behind the text: `LOG \"now\", " +
+                std::string(text.substr(open + 1, close - open - 1)) + "`");
+}
+
 // `SET n TO n % 2`: other languages' MOD. In brackets, or before a comparison, it can mean nothing else.
 bool LexerState::modulo() {
   const std::string_view rest = rest_of_line(start_ + 1);
@@ -379,7 +395,7 @@ void LexerState::assignment() {
     instead(Kinds::EQUAL, "=");
 }
 
-// Whoever writes one writes many. Beside braces, the braces are the mistake.
+// Whoever writes one writes many. Beside braces, the braces are the mistake. At the end of a line it only has to go.
 void LexerState::report_semicolons() {
   constexpr std::size_t most = 4;  // places shown
   if (semicolons_.empty() || has_brace_) return;
@@ -389,6 +405,19 @@ void LexerState::report_semicolons() {
   for (std::size_t at = 1; at < shown; ++at)
     message.label(semicolons_[at], "and here", false);
   message.appears_in_more(semicolons_.size() - shown);
+  constexpr std::size_t most_fixes = 10'000;  // the text may come from outside
+  if (semicolons_.size() > most_fixes) semicolons_.resize(most_fixes);
+  for (const Span sign : semicolons_) {
+    const std::size_t next = std::min(text_.find_first_not_of(" \t", sign.end), text_.size());
+    const char behind = next < text_.size() ? text_[next] : '\n';
+    const bool line_ends = behind == '\n' || behind == '\r';
+    if (!line_ends && behind != '%' && behind != '#') continue;
+    Span all = sign;
+    while (line_ends && all.begin > 0 &&
+           std::string_view(" \t;").find(text_[all.begin - 1]) != std::string_view::npos)
+      --all.begin;
+    message.fix(all, "");
+  }
 }
 
 // ---- braces and comments

@@ -213,6 +213,10 @@ void LexerState::strange(std::size_t size) {
                                                 utf8::describe(utf8::decode(text_, start_).value))
                             .label(here());
   if (text_[start_] == '^') message.helps("RSL has no powers: multiply, such as `n * n`");
+  if (text_[start_] == '.' &&
+      rest_of_line(cursor_).find_first_not_of(" \t") == std::string_view::npos)
+    message.helps("a line ends without a full stop");
+  if (text_[start_] == '$') message.helps("a name has only letters, digits and `_`");
   if (text_[start_] == '\\')
     message.helps("for quotation marks inside a text, put it in '…': `'say \"hi\" now'`");
   if (text_[start_] == '[' || text_[start_] == ']')

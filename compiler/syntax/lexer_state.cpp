@@ -166,6 +166,7 @@ void LexerState::quantity() {
 
 void LexerState::string() {
   if (apostrophe_in_number() || apostrophe_in_text()) return;
+  text_of_python();
   token(Kinds::STRING);
 }
 

@@ -68,6 +68,7 @@ private:
   bool negation();
   bool apostrophe_in_number();
   bool apostrophe_in_text();
+  void text_of_python();
   bool modulo();
   bool percent_of_question();
   void whole_division();

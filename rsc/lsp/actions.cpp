@@ -67,10 +67,13 @@ private:
   }
   [[nodiscard]] bool is_touched(const SourceMap& sources, const Diagnostic& diagnostic,
                                 const Fix& fix) const {
+    const bool one_of_many = fix.applicability == compiler::Applicability::certain &&
+                             diagnostic.fixes.size() > 1;  // each at its own place
     return is_touched(sources, fix.span) ||
-           std::ranges::any_of(diagnostic.labels, [&](const compiler::Label& label) {
-             return label.primary && is_touched(sources, label.span);
-           });
+           (!one_of_many &&
+            std::ranges::any_of(diagnostic.labels, [&](const compiler::Label& label) {
+              return label.primary && is_touched(sources, label.span);
+            }));
   }
 
   void look(const Checked& checked) {

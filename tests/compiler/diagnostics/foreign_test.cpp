@@ -63,6 +63,28 @@ const Case kCases[] = {
     {"IF touch LEVEL < 3 THEN\nSHOW face happy\nEND IF\n", kWhen},
     {"IF touch LEVEL < 3 THEN SHOW face happy\n", kWhen},
     {"IF touch LEVEL < 3\n  SHOW face happy\nEND\n", kWhen},
+    {"10 PRINT \"hi\"\n20 GOTO 10\n", "LOG \"hello\""},
+    {"10 REM my robot\n20 LET X = 5\n30 IF X > 3 THEN GOTO 60\n40 FOR I = 1 TO 3\n50 NEXT I\n60 "
+     "END\n",
+     "REMEMBER x = 0"},
+    {"10 print \"hi\"\n" + rule("SHOW face happy"), kForeign},
+    // several habits in one line
+    {"REMEMBER y = 0\nif (touch LEVEL > 3) { y = 5; }\n",
+     "`WHEN touch LEVEL > 3 DO SET y TO 5 END`"},
+    {"REMEMBER y = 0\n" + rule("if (touch LEVEL > 3) { y = 5; }"),
+     "`IF touch LEVEL > 3 DO SET y TO 5 END`"},
+    {"REMEMBER x = 0\nIF touch LEVEL > 3 THEN x = 5\n", "`WHEN touch LEVEL > 3 DO SET x TO 5 END`"},
+    {"REMEMBER x = 0\n" + rule("IF touch LEVEL > 3 THEN x = 5"),
+     "`IF touch LEVEL > 3 DO SET x TO 5 END`"},
+    {"REMEMBER x = 0\n" + rule("IF touch LEVEL > 3 THEN x = 5 ELSE x = 6"),
+     "`IF touch LEVEL > 3 DO SET x TO 5 ELSE SET x TO 6 END`"},
+    {"REMEMBER y = 0\n" + rule("if ((touch LEVEL > 3) && (y == 0)) { y += 1; } else { y--; }"),
+     "`IF (touch LEVEL > 3) AND (y == 0) DO RAISE y BY 1 ELSE LOWER y BY 1 END`"},
+    {"REMEMBER y = 0\n" + rule("if (touch LEVEL > 3) { y = 5; SHOW face happy; }"),
+     "`IF touch LEVEL > 3 DO`, then each command on a line of its own, such as `SET y TO 5`"},
+    {"IF touch LEVEL > 3 THEN PRINT \"hi\"\n", "`WHEN touch LEVEL > 3 DO LOG \"hi\" END`"},
+    {"BEHAVIOR b PRIORITY 3\n  if (touch LEVEL > 3) { SHOW face happy; }\nEND\n",
+     "`WHEN touch LEVEL > 3 DO SHOW face happy END`"},
     // Scratch
     {"when green flag clicked\nforever\n  move 10 steps\n  if <touching edge> then\n    turn 15\n"
      "  end\nend\n",
@@ -123,6 +145,30 @@ TEST_CASE("semicolons are one error with their places") {
   CHECK_THAT(messages(result), Contains("it appears in 2 more places"));
 }
 
+TEST_CASE("semicolons at the ends of lines go by a fix that is certain") {
+  const std::string right = rule("SHOW face happy\n  WAIT 1s % then; and\n\n  LOG \"a; b;\"");
+  const std::string wrong =
+      "WHEN touch LEVEL < 3 DO\n  SHOW face happy ;\n  WAIT 1s; % then; and\n;;\n  LOG \"a; b;\" ; "
+      ";\nEND;\n";
+  const Result result = compile_text(wrong, common_robot());
+  REQUIRE(result.diagnostics.errors() == 1);
+  std::string text = wrong;
+  const auto& fixes = result.diagnostics.all().front().fixes;
+  for (auto fix = fixes.rbegin(); fix != fixes.rend(); ++fix) {
+    CHECK(fix->applicability == Applicability::certain);
+    text.replace(fix->span.begin, fix->span.end - fix->span.begin, fix->replacement);
+  }
+  CHECK(text == right);
+}
+
+TEST_CASE("a semicolon between two statements has no fix that is certain") {
+  const Result result = compile_text(rule("SHOW face happy; WAIT 1s"), common_robot());
+  REQUIRE(result.diagnostics.errors() >= 1);
+  for (const Diagnostic& one : result.diagnostics.all())
+    for (const Fix& fix : one.fixes)
+      CHECK(fix.applicability != Applicability::certain);
+}
+
 TEST_CASE("lines of RSL are not taken for those of another language") {
   for (const std::string& program : {
            "DEFINE fin\n  SHOW face happy\nEND\n" + rule("fin"),
@@ -131,6 +177,22 @@ TEST_CASE("lines of RSL are not taken for those of another language") {
                        "WHEN size IS fin DO SHOW face happy END\n"),
            std::string("WHEN\n  mal > 3\nDO\n  SHOW face sad\nEND\nREMEMBER mal = 0\n"),
            std::string("LET pressed = 3\nWHEN touch LEVEL < pressed\nDO\n  SHOW face happy\nEND\n"),
+       }) {
+    const Result result = compile_text(program, common_robot());
+    INFO(program << '\n' << messages(result));
+    CHECK(result.diagnostics.errors() == 0);
+  }
+}
+
+TEST_CASE("numbers and short blocks of RSL are not taken for BASIC or C") {
+  for (const std::string& program : {
+           std::string(
+               "WHEN touch LEVEL > 5 THEN touch LEVEL < 2 WITHIN 2s\nDO SHOW face happy\nEND\n"),
+           "STATE mood: calm, wild\n" + rule("SET mood TO calm"),
+           std::string("REMEMBER x = 0\nWHEN touch LEVEL >\n  3 FOR 2s DO SET x TO 4 ELSE SET x TO "
+                       "3 END\n"),
+           std::string("LIST few: 1,\n  2\n") + rule("LOG ITEM 1 OF few"),
+           rule("PICK ONE\n  OPTION 50%\n  SHOW face happy\n  OPTION 50%\n  SHOW face sad\n  END"),
        }) {
     const Result result = compile_text(program, common_robot());
     INFO(program << '\n' << messages(result));

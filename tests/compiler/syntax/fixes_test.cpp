@@ -99,6 +99,8 @@ std::vector<Change> changes_of(const std::string& program) {
     changes.push_back({"left out", replaced(program, token.span, "")});
     changes.push_back({"twice", replaced(program, front, text + " ")});
     changes.push_back({"NOT before it", replaced(program, front, "NOT ")});
+    if (token.kind == Kinds::NEWLINE)
+      changes.push_back({"semicolon before it", replaced(program, front, " ;")});
     if (token.kind == Kinds::NEWLINE) continue;
     changes.push_back({"line ended before it", replaced(program, front, "\n")});
     if (token.kind == Kinds::QUANTITY) change_number(changes, program, token.span);

@@ -40,6 +40,18 @@ std::vector<std::string> codes(const Json& diagnostics) {
 
 }  // namespace
 
+TEST_CASE("of many fixes of one mistake, those at the place are offered, and all of them at once") {
+  Editor editor;
+  editor.open("robot.rsl", "WHEN touch LEVEL > 3 DO\n  STOP ALL;\n  WAIT 1s;\nEND;\n");
+  CHECK(editor.diagnostics("robot.rsl").size() == 1);
+  const Json offered = actions(editor, "robot.rsl", range(1, 10, 11));
+  REQUIRE(offered.size() == 2);
+  CHECK(offered[0].at("title") == "Remove `;`");
+  CHECK(offered[1].at("kind") == "source.fixAll");
+  const Json& edits = offered[1].at("edit").at("changes").at(editor.uri("robot.rsl"));
+  CHECK(edits.size() == 3);
+}
+
 TEST_CASE("a mistake is shown while it is there, with the version of the text") {
   Editor editor;
   editor.open("robot.rsl", kWrong);
