@@ -93,32 +93,38 @@ void Collector::collect_robot() {
     add(SymbolKind::group, robot.groups[g].name, g);
 }
 
+void Collector::refer_to(SymbolKind kind, const Spelled& name, std::size_t owner, Span place) {
+  occurrences.push_back({place, intern({kind, name.text, name.span, true, owner}), false});
+}
+
 // Names of parts in entries of other parts.
 void Collector::collect_references() {
   const Robot& robot = project_.robot;
-  const auto refers = [this](Span place, SymbolKind kind, const Spelled& name, std::size_t owner) {
-    occurrences.push_back({place, intern({kind, name.text, name.span, true, owner}), false});
-  };
-  const auto to_sensor = [&](Span place, std::size_t s) {
-    refers(place, SymbolKind::sensor, robot.sensors[s].name, s);
-  };
-  const auto to_actuator = [&](Span place, std::size_t a) {
-    refers(place, SymbolKind::actuator, robot.actuators[a].name, a);
-  };
+  // Where each is named, with its kind and its place in the robot.
+  std::vector<std::tuple<Span, SymbolKind, std::size_t>> places;
   for (const SensorConfig& sensor : robot.sensors)
-    if (sensor.algorithm) to_sensor(sensor.algorithm->input_span, sensor.algorithm->input);
+    if (sensor.algorithm)
+      places.emplace_back(sensor.algorithm->input_span, SymbolKind::sensor,
+                          sensor.algorithm->input);
   for (const ActuatorConfig& actuator : robot.actuators)
     for (std::size_t i = 0; actuator.encoders && i < actuator.encoders->size(); ++i)
-      to_sensor(actuator.encoder_spans.at(i), actuator.encoders->at(i));
+      places.emplace_back(actuator.encoder_spans.at(i), SymbolKind::sensor,
+                          actuator.encoders->at(i));
   for (const GroupConfig& group : robot.groups)
     for (std::size_t i = 0; i < group.member_spans.size(); ++i)
-      to_actuator(group.member_spans[i], group.members[i]);
+      places.emplace_back(group.member_spans[i], SymbolKind::actuator, group.members[i]);
   for (const BehaviorConfig& behavior : robot.behaviors) {
-    if (behavior.action) to_actuator(behavior.action_span, *behavior.action);
+    if (behavior.action)
+      places.emplace_back(behavior.action_span, SymbolKind::actuator, *behavior.action);
     if (behavior.action_group)
-      refers(behavior.action_span, SymbolKind::group, robot.groups[*behavior.action_group].name,
-             *behavior.action_group);
+      places.emplace_back(behavior.action_span, SymbolKind::group, *behavior.action_group);
   }
+  for (const auto& [place, kind, owner] : places)
+    refer_to(kind,
+             kind == SymbolKind::sensor     ? robot.sensors[owner].name
+             : kind == SymbolKind::actuator ? robot.actuators[owner].name
+                                            : robot.groups[owner].name,
+             owner, place);
 }
 
 // robot.json may describe a BEHAVIOR, too, and uses its name there.

@@ -29,6 +29,7 @@ private:
   void refer(const ast::Name& name, Symbol symbol);
   void collect_robot();
   void collect_references();
+  void refer_to(SymbolKind kind, const Spelled& name, std::size_t owner, Span place);
   void collect_behaviors();
 
   // ---- looking up; false: the name is not of this kind

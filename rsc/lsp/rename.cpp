@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/source/sorting.hpp"
 #include "rsc/lsp/meant.hpp"
 
 namespace robosync::tool::lsp {
@@ -87,23 +88,29 @@ std::vector<Meant> renamed_at(Desk desk, const Json& params) {
 // ---- the changes
 
 struct Edit {
+  const SourceMap* sources = nullptr;
   Span span;
   std::string text;
-};
-struct Changed {
-  const SourceMap* sources = nullptr;
-  std::map<std::uint32_t, Edit> edits{};  // by their beginning
-};
-using Changes = std::map<std::string, Changed>;  // by file
 
-void add(Changes& changes, const SourceMap& sources, Span span, std::string text) {
-  Changed& changed = changes[sources.file(span.file).name()];
-  changed.sources = &sources;
-  changed.edits.insert_or_assign(span.begin, Edit{span, std::move(text)});
+  [[nodiscard]] const SourceFile& file() const { return sources->file(span.file); }
+};
+using Edits = std::vector<Edit>;
+
+bool comes_before(const Edit& a, const Edit& b) {
+  return a.file().name() != b.file().name() ? a.file().name() < b.file().name()
+                                            : a.span.begin < b.span.begin;
+}
+
+// Two programs have the same edits of what both use.
+Edits in_order(Edits edits) {
+  compiler::sort_stably(edits, comes_before);
+  const auto same = [](const Edit& a, const Edit& b) { return !comes_before(a, b); };
+  edits.erase(std::unique(edits.begin(), edits.end(), same), edits.end());
+  return edits;
 }
 
 // With the names in which it is a part: `touchLevel` for the sensor `touch`.
-void add_changes(Changes& changes, const Meant& meant, const std::string& name) {
+void add_edits(Edits& edits, const Meant& meant, const std::string& name) {
   const SourceMap& sources = sources_of(meant.asked);
   const query::Symbols& symbols = meant.asked.checked->symbols();
   const query::Project project = meant.asked.checked->project();
@@ -112,28 +119,26 @@ void add_changes(Changes& changes, const Meant& meant, const std::string& name) 
     const query::Symbol& other = symbols.all()[one.symbol];
     const auto joined = query::joined_name(sources.text(span), other, *meant.symbol, name, project);
     if (joined && span.file != kConfigurationFile)
-      add(changes, sources, span, *joined);
+      edits.push_back({&sources, span, *joined});
     else if (one.symbol == meant.name->symbol)
-      add(changes, sources, span, name);
+      edits.push_back({&sources, span, name});
   }
 }
 
-std::string changed_text(const Changed& changed) {
-  const Span first = changed.edits.begin()->second.span;
-  const SourceFile& source = changed.sources->file(first.file);
-  std::string text;
-  std::size_t at = 0;
-  for (const auto& [begin, edit] : changed.edits) {
-    text.append(source.text().substr(at, begin - at)).append(edit.text);
-    at = edit.span.end;
-  }
-  return text.append(source.text().substr(at));
-}
-
-void refuse_other_meaning(Desk desk, const std::vector<Meant>& all, const Changes& changes) {
+// The texts with the edits, by the names of their files.
+std::map<std::string, std::string> edited_texts(const Edits& edits) {
   std::map<std::string, std::string> texts;
-  for (const auto& [file, changed] : changes)
-    texts[file] = changed_text(changed);
+  // From the last to the first, so that the places of the others stay.
+  for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+    const SourceFile& file = edit->file();
+    const auto text = texts.try_emplace(file.name(), file.text()).first;
+    text->second.replace(edit->span.begin, edit->span.end - edit->span.begin, edit->text);
+  }
+  return texts;
+}
+
+void refuse_other_meaning(Desk desk, const std::vector<Meant>& all, const Edits& edits) {
+  const auto texts = edited_texts(edits);
   for (const Meant& meant : all) {
     const Checked after = desk.workspace.checked_with(*meant.asked.checked, texts);
     const std::string why = query::why_not_same(meant.asked.checked->symbols(),
@@ -157,23 +162,23 @@ Json rename(Desk desk, const Json& params) {
   const std::string name = params.at("newName").get<std::string>();
   desk.workspace.forget();  // files that are not open may have changed
   const std::vector<Meant> all = renamed_at(desk, params);
-  Changes changes;
+  Edits edits;
   for (const Meant& meant : all) {
     const Checked& checked = *meant.asked.checked;
     const std::string why =
         query::why_not_called(name, *meant.symbol, checked.project(), checked.symbols());
     if (!why.empty()) throw Refusal(why);
-    add_changes(changes, meant, name);
+    add_edits(edits, meant, name);
   }
-  refuse_other_meaning(desk, all, changes);
+  edits = in_order(std::move(edits));
+  refuse_other_meaning(desk, all, edits);
   Json result = Json::object();
-  for (const auto& [file, changed] : changes)
-    for (const auto& [begin, edit] : changed.edits) {
-      const Json location = location_json(*changed.sources, edit.span, desk.workspace);
-      if (location.is_null()) continue;
-      result[location["uri"].get<std::string>()].push_back(
-          {{"range", location["range"]}, {"newText", edit.text}});
-    }
+  for (const Edit& edit : edits) {
+    const Json location = location_json(*edit.sources, edit.span, desk.workspace);
+    if (location.is_null()) continue;
+    result[location["uri"].get<std::string>()].push_back(
+        {{"range", location["range"]}, {"newText", edit.text}});
+  }
   return {{"changes", std::move(result)}};
 }
 
