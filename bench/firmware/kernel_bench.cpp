@@ -18,6 +18,9 @@
 extern "C" {
 robosync::kernel::Kernel robosync_kernel;
 void bench_interrupt();
+// There is no board here that could have work for the idle thread (port/cortex-m4/hooks.hpp).
+volatile std::uint32_t robosync_has_work = 0;
+void robosync_work_instead() {}
 }
 
 namespace robosync::port::hooks {
