@@ -14,7 +14,7 @@ using test::Editor, test::Json, test::Marked, test::Words;
 namespace {
 
 // A robot in which names refer to others in every way there is.
-constexpr const char* kRobot = R"({
+constexpr const char* kReferringRobot = R"({
   "sensors": [
     {"name": "touch", "type": "VIRTUAL", "channels": {"LEVEL": {"range": [0, 10]}, "HEAT": {"range": [0, 10]}}},
     {"name": "left_wheel", "device": "encoder", "type": "GPIO", "pin": 40, "pulses_per_turn": 20, "wheel": "65mm"},
@@ -90,11 +90,11 @@ const Json kAll = {{"context", {{"includeDeclaration", true}}}};
 
 // With two programs, one of which is not open.
 struct Both : Editor {
-  Both() : Editor(Json::object(), kRobot) {
+  Both() : Editor(Json::object(), kReferringRobot) {
     save(*this, "other.rsl", kOther);
     open("robot.rsl", kHug);
   }
-  void open_robot() { open("robot.json", kRobot); }
+  void open_robot() { open("robot.json", kReferringRobot); }
   Json renamed(const std::string& file, const std::string& text, const std::string& word, int nth,
                const std::string& name) {
     return asked(*this, "rename", file, text, word, nth, {{"newName", name}});
@@ -102,7 +102,7 @@ struct Both : Editor {
   // All three files after the answer.
   std::map<std::string, std::string> after(const Json& answer) {
     std::map<std::string, std::string> texts = {
-        {"robot.rsl", kHug}, {"other.rsl", kOther}, {"robot.json", kRobot}};
+        {"robot.rsl", kHug}, {"other.rsl", kOther}, {"robot.json", kReferringRobot}};
     for (auto& [name, text] : texts)
       if (answer.at("changes").contains(uri(name)))
         text = edited(text, answer.at("changes").at(uri(name)));
@@ -136,11 +136,11 @@ TEST_CASE("a name that another entry of robot.json gives leads to its declaratio
         std::tuple("left_wheel", 2, 3), std::tuple("right_wheel", 2, 4),
         std::tuple("\"arms\"", 2, 12)}) {
     CAPTURE(word, nth);
-    const Json place = asked(editor, "definition", "robot.json", kRobot, word, nth);
+    const Json place = asked(editor, "definition", "robot.json", kReferringRobot, word, nth);
     CHECK(place.at("uri") == editor.uri("robot.json"));
     CHECK(place.at("range").at("start").at("line") == line);
   }
-  const Json behavior = asked(editor, "definition", "robot.json", kRobot, "hug");
+  const Json behavior = asked(editor, "definition", "robot.json", kReferringRobot, "hug");
   CHECK(behavior.at("uri") == editor.uri("robot.rsl"));
 }
 
@@ -153,16 +153,17 @@ TEST_CASE("the places of a name are the same from robot.json and from RSL, in al
   CHECK(counted(asked(editor, "references", "other.rsl", kOther, "left_arm", 1, kAll)) == places);
   editor.open_robot();
   for (const int nth : {1, 2, 3})
-    CHECK(counted(asked(editor, "references", "robot.json", kRobot, "left_arm", nth, kAll)) ==
-          places);
-  CHECK(counted(asked(editor, "references", "robot.json", kRobot, "hug", 1, kAll)) ==
+    CHECK(counted(asked(editor, "references", "robot.json", kReferringRobot, "left_arm", nth,
+                        kAll)) == places);
+  CHECK(counted(asked(editor, "references", "robot.json", kReferringRobot, "hug", 1, kAll)) ==
         "robot.json 1 robot.rsl 1 ");
 }
 
 TEST_CASE("the places of a name in the same text are highlighted, its declaration in another way") {
   Both editor;
   editor.open_robot();
-  const Json found = asked(editor, "documentHighlight", "robot.json", kRobot, "left_arm", 2);
+  const Json found =
+      asked(editor, "documentHighlight", "robot.json", kReferringRobot, "left_arm", 2);
   REQUIRE(found.size() == 3);
   CHECK(found[0].at("kind") == 3);
   CHECK(found[1].at("kind") == 2);
@@ -192,9 +193,9 @@ TEST_CASE("a name of robot.json is changed in robot.json and in every program, o
   };
   for (const Case& one : cases) {
     CAPTURE(one.file, one.word, one.nth);
-    const std::string& text = one.file == "robot.json" ? kRobot : kHug;
+    const std::string& text = one.file == "robot.json" ? kReferringRobot : kHug;
     const auto after = editor.after(editor.renamed(one.file, text, one.word, one.nth, one.name));
-    CHECK(after.at("robot.json") == replaced(kRobot, one.word, one.name));
+    CHECK(after.at("robot.json") == replaced(kReferringRobot, one.word, one.name));
     CHECK(after.at("robot.rsl") == replaced(kHug, one.word, one.name));
     CHECK(after.at("other.rsl") == replaced(kOther, one.word, one.name));
   }
@@ -208,21 +209,21 @@ TEST_CASE("a sensor and its channel are changed where one word says both") {
   CHECK_THAT(after.at("other.rsl"), Contains("hand_heat > 3"));
   CHECK_THAT(after.at("robot.json"),
              Contains("\"name\": \"HAND\"") && Contains("\"input\": \"HAND\""));
-  after = editor.after(editor.renamed("robot.json", kRobot, "\"touch\"", 2, "hand"));
+  after = editor.after(editor.renamed("robot.json", kReferringRobot, "\"touch\"", 2, "hand"));
   CHECK_THAT(after.at("robot.rsl"), Contains("hand LEVEL > 3 AND handLevel < 9"));
-  after = editor.after(editor.renamed("robot.json", kRobot, "LEVEL", 1, "FORCE"));
+  after = editor.after(editor.renamed("robot.json", kReferringRobot, "LEVEL", 1, "FORCE"));
   CHECK_THAT(after.at("robot.rsl"), Contains("touch FORCE > 3 AND touchForce < 9"));
   CHECK(after.at("other.rsl") == kOther);
   after = editor.after(editor.renamed("robot.rsl", kHug, "touchLevel", 1, "force"));
   CHECK_THAT(after.at("robot.rsl"), Contains("touch force > 3 AND touchForce < 9"));
-  after = editor.after(editor.renamed("robot.json", kRobot, "HEAT", 1, "Warmth"));
+  after = editor.after(editor.renamed("robot.json", kReferringRobot, "HEAT", 1, "Warmth"));
   CHECK_THAT(after.at("other.rsl"), Contains("touch_Warmth > 3"));
 }
 
 TEST_CASE("a name is shown without its quotes before it is changed") {
   Both editor;
   editor.open_robot();
-  const Json shown = asked(editor, "prepareRename", "robot.json", kRobot, "left_arm", 2);
+  const Json shown = asked(editor, "prepareRename", "robot.json", kReferringRobot, "left_arm", 2);
   CHECK(shown.at("placeholder") == "left_arm");
   CHECK(shown.at("range").at("end").at("character").get<int>() -
             shown.at("range").at("start").at("character").get<int>() ==
@@ -234,7 +235,7 @@ TEST_CASE("a name of robot.json that is taken, or is none, is refused with the r
   editor.open_robot();
   save(editor, "third.rsl", "LET most = 3\nWHEN touch LEVEL > most DO LOG \"x\"\nEND\n");
   const auto why = [&](const std::string& word, int nth, const std::string& name) {
-    return editor.renamed("robot.json", kRobot, word, nth, name).value("message", "");
+    return editor.renamed("robot.json", kReferringRobot, word, nth, name).value("message", "");
   };
   for (const char* const bad : {"", "7up", "a b", "a\"b", "a-b", "\"a\"", "%"})
     CHECK_THAT(why("left_arm", 1, bad), Contains("is no name"));
@@ -252,7 +253,7 @@ TEST_CASE("a name of robot.json that is taken, or is none, is refused with the r
 TEST_CASE("a name after which another one would mean something else is refused") {
   Editor editor;
   // `touch_level` would be the channel and the LET.
-  save(editor, "robot.json", kRobot);
+  save(editor, "robot.json", kReferringRobot);
   editor.open("robot.rsl", "LET handLevel = 3\nWHEN touch LEVEL > handLevel DO LOG \"x\"\nEND\n");
   const Json error = asked(editor, "rename", "robot.rsl",
                            "LET handLevel = 3\nWHEN touch LEVEL > handLevel DO LOG \"x\"\nEND\n",
@@ -261,7 +262,7 @@ TEST_CASE("a name after which another one would mean something else is refused")
 }
 
 TEST_CASE("a name that the library says is not changed") {
-  const std::string robot = replaced(kRobot, "left_arm", "head");
+  const std::string robot = replaced(kReferringRobot, "left_arm", "head");
   Editor editor(Json::object(), robot.c_str());
   editor.open("robot.rsl", "USE attention\nWHEN touch LEVEL > 3 DO LOG \"x\"\nEND\n");
   editor.open("robot.json", robot);
@@ -272,13 +273,14 @@ TEST_CASE("a name that the library says is not changed") {
 TEST_CASE("a name in a module that a program of another robot uses is not changed") {
   Both editor;
   std::filesystem::create_directory(editor.folder.path("far"));
-  save(editor, "far/robot.json", kRobot);
+  save(editor, "far/robot.json", kReferringRobot);
   save(editor, "part.rsl", "DEFINE wave\n  MOVE left_arm TO 30deg\nEND\n");
   editor.open("robot.rsl", "USE \"part.rsl\"\nWHEN touch LEVEL > 3 DO wave\nEND\n");
   editor.open("far/robot.rsl", "USE \"../part.rsl\"\nWHEN touch LEVEL > 3 DO wave\nEND\n");
   editor.open_robot();
-  CHECK_THAT(editor.renamed("robot.json", kRobot, "left_arm", 1, "paw").value("message", ""),
-             Contains("part.rsl says `left_arm`, and is also a module of"));
+  CHECK_THAT(
+      editor.renamed("robot.json", kReferringRobot, "left_arm", 1, "paw").value("message", ""),
+      Contains("part.rsl says `left_arm`, and is also a module of"));
 }
 
 TEST_CASE("a module of the same robot is changed with its programs") {
@@ -286,7 +288,8 @@ TEST_CASE("a module of the same robot is changed with its programs") {
   save(editor, "part.rsl", "DEFINE wave\n  MOVE left_arm TO 30deg\nEND\n");
   editor.open("robot.rsl", "USE \"part.rsl\"\nWHEN touch LEVEL > 3 DO wave\nEND\n");
   editor.open_robot();
-  const Json changes = editor.renamed("robot.json", kRobot, "left_arm", 1, "paw").at("changes");
+  const Json changes =
+      editor.renamed("robot.json", kReferringRobot, "left_arm", 1, "paw").at("changes");
   CHECK(edited(editor.folder.read("part.rsl"), changes.at(editor.uri("part.rsl"))) ==
         "DEFINE wave\n  MOVE paw TO 30deg\nEND\n");
   CHECK(changes.contains(editor.uri("other.rsl")));
@@ -308,9 +311,9 @@ TEST_CASE(
 TEST_CASE("what was written to a file that is not open is seen when a name is changed") {
   Both editor;
   editor.open_robot();
-  (void)editor.renamed("robot.json", kRobot, "left_arm", 1, "paw");
+  (void)editor.renamed("robot.json", kReferringRobot, "left_arm", 1, "paw");
   save(editor, "other.rsl", "% left\n" + kOther);
-  const Json answer = editor.renamed("robot.json", kRobot, "left_arm", 1, "paw");
+  const Json answer = editor.renamed("robot.json", kReferringRobot, "left_arm", 1, "paw");
   CHECK(answer.at("changes").at(editor.uri("other.rsl"))[0].at("range").at("start").at("line") ==
         1);
 }
