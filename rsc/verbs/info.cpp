@@ -118,7 +118,7 @@ std::string now_text(const Now& now) {
 }
 
 std::string buses_text(const Buses& buses) {
-  const std::string scan = buses.scan ? scan_text(*buses.scan) : std::string();
+  std::string scan = buses.scan ? scan_text(*buses.scan) : std::string();
   if (buses.devices.empty() && buses.clears == 0) return scan;
   unsigned failed = 0;
   for (const OnBus& device : buses.devices)
