@@ -15,7 +15,9 @@ from support import PROGRAMS
 from tap import Tap
 from test_store import Switched
 
-SPARE = 100  # bytes of the link's stack that a signature does not need: an interrupt and a switch store 68 there. test_stacks.py bounds all paths
+# Bytes of the link's stack that a signature does not need: an interrupt and a switch store 68 there. test_stacks.py bounds all
+# paths.
+SPARE = 100
 TRIES = 20
 FAST_LINE = 2_000_000
 # The boards whose firmware is built without signatures.
