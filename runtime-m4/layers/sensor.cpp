@@ -112,12 +112,13 @@ void SensorLayer::run_sensor(unsigned sensor) {
   }
 }
 
-// When the program begins, unless the sensor itself takes long to answer, or is already measuring: one that was asked for
+// When the program begins, unless the sensor takes an echo's time to answer, or is already measuring: one that was asked for
 // SAFETY at the last moment has its whole period, too.
 kernel::Time SensorLayer::first_sample(unsigned sensor) const {
   const vm::Sensor& wiring = program_->image.sensors[sensor];
   const bool measures = vm::measures_when_told(wiring.driver) && !units_[sensor].contact.discards();
-  const bool at_once = !vm::is_by_echo(wiring.driver) && !measures;
+  const bool waits_for_echo = asks_ahead(sensor) >= kernel::milliseconds(policy::kEchoMs);
+  const bool at_once = !waits_for_echo && !measures;
   return trace_.activated_at() + (at_once ? 0 : kernel::milliseconds(wiring.period_ms));
 }
 
