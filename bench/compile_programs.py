@@ -211,6 +211,13 @@ def syntax_errors(n):
     return Source(["WHEN touch LEVEL >", "DO MOVE arms TO TO", "END"] * n)
 
 
+def lines_of_other_languages(n):
+    """Habits that are mended in the tokens, before anything is parsed."""
+    lines = sum(([f"REMEMBER my-{word(i)} = 0", "if (touch LEVEL > 3) { x = 5; }", "GIVEN touch LEVEL = 5",
+                  "WHEN touch LEVEL > 4 DO", "  STOP arms WHEN touch LEVEL > 5", "END"] for i in range(n)), [])
+    return Source(lines)
+
+
 def open_blocks(n):
     return Source(["WHEN touch LEVEL > 4", "DO", "  IF touch LEVEL > 5", "  DO MOVE arms SLOWLY"] * n)
 
@@ -352,7 +359,7 @@ def repeated_keys(n):
 # Each with an n that takes long enough to be measured.
 REPEATED = {
     misspelt_names: 4000, misspelt_defines: 4000, unknown_verbs: 4000, names_twice: 8000,
-    syntax_errors: 24000, open_blocks: 16000, deep_nesting: 20000, long_line: 4000,
+    syntax_errors: 24000, lines_of_other_languages: 4000, open_blocks: 16000, deep_nesting: 20000, long_line: 4000,
     state_words: 4000, misspelt_state_words: 4000, check_bands: 4000, variables: 4000, defines: 4000,
     behaviors: 4000, rules: 1000, different_rules: 4000, commands: 8000, tests: 2000,
     long_chain_of_modules: 1000, modules: 10000, too_many_modules: 4000, missing_modules: 6000,

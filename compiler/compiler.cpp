@@ -105,19 +105,19 @@ Result compile(Input program, Input configuration, const Options& options) {
     for (const ir::LearnedWord& word : written.words)
       reading->robot->sensors[word.channel.sensor].channels[word.channel.channel].add_label(
           word.text);
-    if (diagnostics.errors() > 0)
+    if (diagnostics.has_errors())
       diagnostics = without_clashes(without_warned(offer_modules(diagnostics)), result.sources);
-    if (diagnostics.errors() == 0)
+    if (!diagnostics.has_errors())
       result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
   }
   apply_lints(diagnostics, result.sources, parsed.robot ? &*parsed.robot : nullptr, options.lints);
-  if (parsed.complete && diagnostics.errors() == 0) {
+  if (parsed.complete && !diagnostics.has_errors()) {
     const Robot& robot = *parsed.robot;
     const ir::Program better = options.optimize ? optimize(written, robot) : written;
     Emitted emitted =
         emit(better, written, robot, {.source_lines = options.source_lines, .seed = options.seed},
              diagnostics);
-    if (diagnostics.errors() == 0 && verify_image(emitted, diagnostics)) {
+    if (!diagnostics.has_errors() && verify_image(emitted, diagnostics)) {
       result.image = std::move(emitted.image);
       result.rules = std::move(emitted.rules);
       result.units = units_of(robot);

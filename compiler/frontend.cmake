@@ -65,6 +65,7 @@ target_sources(robosync_compiler_small PRIVATE
   diagnostics/sarif.cpp
   diagnostics/snippet.cpp
   syntax/breaks.cpp
+  syntax/condition_behind.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
   syntax/foreign_text.cpp
@@ -75,6 +76,7 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/indented_blocks.cpp
   syntax/lexer_habits.cpp
   syntax/lexer_mistakes.cpp
+  syntax/line_starts.cpp
   syntax/lost_heads.cpp
   syntax/misplaced_words.cpp
   syntax/missing.cpp
@@ -83,6 +85,7 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/pasted.cpp
   syntax/repair.cpp
   syntax/robot_lines.cpp
+  syntax/torn_names.cpp
   syntax/unit_apart.cpp
   syntax/wording.cpp
   syntax/wrong_forms.cpp

@@ -58,7 +58,7 @@ Reading read_all(Input program, Input configuration, const ModuleReader& read_mo
   if (is_configuration(sources, program_file, diagnostics)) return reading;
   reading.tree = parse(sources, program_file, diagnostics, robot);
   reading.modules = load_modules(reading.tree, sources, read_module, diagnostics, robot);
-  const bool whole_trees = diagnostics.errors() == 0;
+  const bool whole_trees = !diagnostics.has_errors();
   for (const Diagnostic& diagnostic : of_robot.all())
     diagnostics.add(diagnostic);
   reading.complete = whole_trees && reading.robot && reading.robot->complete;

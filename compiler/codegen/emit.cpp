@@ -23,12 +23,12 @@ public:
 
   Emitted emit(const ir::Program& program, const ir::Program& written, const Robot& robot) {
     const Tables tables(written, robot, diagnostics_);
-    if (diagnostics_.errors() > 0) return {};
+    if (diagnostics_.has_errors()) return {};
     rules_ = make_rules(program, written, tables, strings_, diagnostics_);
     records_ = make_records(written, robot, tables, strings_);
     add_algorithms(robot, tables);
     if (records_.drive) add_drive(vm::values_of(*records_.drive));
-    if (diagnostics_.errors() > 0 || !counts_fit()) return {};
+    if (diagnostics_.has_errors() || !counts_fit()) return {};
     if (options_.source_lines) lines_ = rules_.pool.lines();
     lay_out();
     finish_header(robot);

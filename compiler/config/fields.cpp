@@ -33,6 +33,14 @@ void report_unknown(const json::Member& member, Object object, Diagnostics& diag
     d.helps("it can be " + list_names(candidates, "or"));
 }
 
+// For a value that should be such an object and is none: how it begins, for those that have a name.
+std::string example_of(Object object, const json::Value& value) {
+  const bool named = object == Object::sensor || object == Object::actuator ||
+                     object == Object::behavior || object == Object::algorithm;
+  if (!named || value.kind == json::Kind::object) return {};
+  return "{\"name\": \"" + (value.kind == json::Kind::string ? value.text : "…") + "\"}";
+}
+
 }  // namespace
 
 const std::vector<Key>& known_keys() {
@@ -46,12 +54,7 @@ const std::vector<Key>& known_keys() {
 
 Fields::Fields(const json::Value& value, Object object, Diagnostics& diagnostics)
     : value_(value), diagnostics_(diagnostics) {
-  const bool named = object == Object::sensor || object == Object::actuator ||
-                     object == Object::behavior || object == Object::algorithm;
-  const std::string name = value.kind == json::Kind::string ? value.text : "…";
-  if (!expect_kind(value, json::Kind::object, diagnostics,
-                   named ? "{\"name\": \"" + name + "\"}" : std::string()))
-    return;
+  if (!expect_kind(value, json::Kind::object, diagnostics, example_of(object, value))) return;
   report_repeated_keys(value, diagnostics);
   for (const json::Member& member : value.members)
     check_key(member, object);

@@ -43,12 +43,7 @@ void report_unknown_actuator(const json::Value& value, const Robot& robot, bool 
     d.helps("actuators: " + list_names(candidates));
 }
 
-bool is_group(const json::Value& groups, std::string_view name) {
-  return std::ranges::any_of(groups.members,
-                             [name](const json::Member& one) { return same_name(one.key, name); });
-}
-
-void read_group(const json::Member& member, const json::Value& groups, const NameIndex& actuators,
+void read_group(const json::Member& member, const NameIndex& groups, const NameIndex& actuators,
                 Robot& robot, Diagnostics& diagnostics) {
   GroupConfig group{{member.key, member.key_span}, {}};
   check_name(group.name, diagnostics);
@@ -61,7 +56,7 @@ void read_group(const json::Member& member, const json::Value& groups, const Nam
     const auto name = read_text(item, diagnostics);
     if (!name) continue;
     const auto place = actuators.find(*name);
-    if (!place && is_group(groups, *name)) {
+    if (!place && groups.find(*name)) {
       diagnostics.report(Code::E0205, "`" + *name + "` is a group, and a group has actuators only")
           .label(item.span)
           .helps("name its members instead");
@@ -83,11 +78,14 @@ void read_groups(const json::Value& value, Robot& robot, Diagnostics& diagnostic
     return;
   report_repeated_keys(value, diagnostics);
   const NameIndex actuators = index_of(robot.actuators);
+  NameIndex groups;
+  for (std::size_t g = 0; g < value.members.size(); ++g)
+    groups.add(value.members[g].key, g);
   std::set<std::string_view> known;
   for (const json::Member& member : value.members) {
     const bool good = member.value.kind == json::Kind::array;
     const bool repeated = good ? !known.insert(member.key).second : known.contains(member.key);
-    if (!repeated) read_group(member, value, actuators, robot, diagnostics);
+    if (!repeated) read_group(member, groups, actuators, robot, diagnostics);
   }
 }
 

@@ -141,6 +141,9 @@ std::size_t count(const std::vector<Diagnostic>& all, Level level) {
 std::size_t Diagnostics::errors() const {
   return count(all_, Level::error);
 }
+bool Diagnostics::has_errors() const {
+  return std::ranges::any_of(all_, [](const Diagnostic& one) { return one.level == Level::error; });
+}
 std::size_t Diagnostics::warnings() const {
   return count(all_, Level::warning);
 }

@@ -78,6 +78,7 @@ public:
   Diagnostic& report(Code code, std::string message);
   void add(Diagnostic diagnostic) { all_.push_back(std::move(diagnostic)); }
   std::size_t errors() const;
+  bool has_errors() const;  // does not count them
   std::size_t warnings() const;
   const std::vector<Diagnostic>& all() const { return all_; }
   // Points the errors reported since there were `before` diagnostics at `use`, the place in another file that asked for

@@ -47,8 +47,8 @@ public:
     motions_.check_unused();
     program_.behaviors = behaviors_.finish();
     // After errors, some commands and uses may be missing.
-    if (diagnostics_.errors() == 0) check_waiting_commands(program_, names_, diagnostics_);
-    if (diagnostics_.errors() == 0) lint();
+    if (!diagnostics_.has_errors()) check_waiting_commands(program_, names_, diagnostics_);
+    if (!diagnostics_.has_errors()) lint();
     return std::move(program_);
   }
 

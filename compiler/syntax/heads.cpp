@@ -2,7 +2,6 @@
 #include "compiler/syntax/heads.hpp"
 
 #include <algorithm>
-#include <initializer_list>
 #include <string>
 
 #include "compiler/source/ascii.hpp"
@@ -43,132 +42,9 @@ bool rule_follows(const Tokens& tokens, std::size_t end) {
 
 }  // namespace
 
-namespace {
-
-// True when `behind` can follow the name in a declaration that begins with `first`.
-bool declares(TokenKind first, TokenKind behind) {
-  switch (first) {
-    case Kinds::REMEMBER:
-    case Kinds::LET:
-      return behind == Kinds::EQUAL;
-    case Kinds::STATE:
-    case Kinds::LIST:
-      return behind == Kinds::COLON;
-    case Kinds::FEELING:
-      return behind == Kinds::FROM;
-    case Kinds::TIMER:
-    case Kinds::DEFINE:
-      return behind == Kinds::NEWLINE || behind == Kinds::WITH;
-    case Kinds::CHECK:
-    case Kinds::MOTION:
-      return behind == Kinds::OF;
-    default:
-      return false;
-  }
-}
-
-bool are(const Tokens& tokens, std::size_t at, std::initializer_list<TokenKind> kinds) {
-  return at + kinds.size() <= tokens.size() &&
-         std::equal(kinds.begin(), kinds.end(), tokens.begin() + static_cast<std::ptrdiff_t>(at),
-                    [](TokenKind kind, const Token& token) { return kind == token.kind; });
-}
-
-// `PRIORITY 5 BEHAVIOR greet`
-void mend_order(Tokens& tokens, std::size_t at, const SourceFile& source,
-                Diagnostics& diagnostics) {
-  if (!are(tokens, at, {Kinds::PRIORITY, Kinds::QUANTITY, Kinds::BEHAVIOR, Kinds::NAME})) return;
-  Span all = tokens[at].span;
-  all.end = tokens[at + 3].span.end;
-  const std::string better = "BEHAVIOR " + std::string(source.text(tokens[at + 3].span)) +
-                             " PRIORITY " + std::string(source.text(tokens[at + 1].span));
-  diagnostics.report(Code::E0001, "the PRIORITY comes after the name of a BEHAVIOR")
-      .label(all)
-      .helps("write `" + better + "`")
-      .fix(all, better, Applicability::likely);
-  const auto first = tokens.begin() + static_cast<std::ptrdiff_t>(at);
-  std::rotate(first, first + 2, first + 4);
-}
-
-// `AT 10s DO`
-void mend_time(Tokens& tokens, std::size_t at, const SourceFile& source, Diagnostics& diagnostics) {
-  std::size_t next = at + 2;
-  while (next < tokens.size() && tokens[next].kind == Kinds::NEWLINE)
-    ++next;
-  if (!are(tokens, at, {Kinds::AT, Kinds::QUANTITY}) || !are(tokens, next, {Kinds::DO})) return;
-  const std::string time(source.text(tokens[at + 1].span));
-  Span all = tokens[at].span;
-  all.end = tokens[at + 1].span.end;
-  diagnostics
-      .report(Code::E0010, "a rule cannot begin with `" + std::string(source.text(all)) + "`")
-      .label(all)
-      .helps("to act once after the start, write `AT START DO`, then `WAIT " + time + "`")
-      .helps("to act again and again, write `EVERY " + time + " DO`");
-  tokens[at].kind = Kinds::EVERY;
-}
-
-// `GIVEN touch LEVEL = 5`
-void mend_given(Tokens& tokens, std::size_t at, const SourceFile& source,
-                Diagnostics& diagnostics) {
-  const std::size_t sign =
-      are(tokens, at, {Kinds::NAME, Kinds::NAME, Kinds::NAME}) ? at + 3 : at + 2;
-  const Span word = tokens[at].span;
-  if (!are(tokens, at, {Kinds::NAME, Kinds::NAME}) ||
-      !are(tokens, sign, {Kinds::EQUAL, Kinds::QUANTITY}) ||
-      !ascii::same(source.text(word), "GIVEN"))
-    return;
-  const Span step{word.file, tokens[at + 1].span.begin, tokens[sign + 1].span.end};
-  diagnostics.report(Code::E0001, "a step of a TEST that sets a sensor begins with its time")
-      .label(word)
-      .helps("write `AT 0s " + std::string(source.text(step)) + "`")
-      .fix(word, "AT 0s", Applicability::likely);
-  tokens[at].kind = Kinds::AT;
-  tokens.insert(tokens.begin() + static_cast<std::ptrdiff_t>(at) + 1,
-                {Kinds::QUANTITY, {word.file, word.end, word.end}});
-}
-
-// `my-count`: one name in the whole file, if a line declares it.
-void mend_torn_name(Tokens& tokens, std::size_t at, const SourceFile& source,
-                    Diagnostics& diagnostics) {
-  const auto is_torn = [&](std::size_t name) {
-    return are(tokens, name, {Kinds::NAME, Kinds::MINUS, Kinds::NAME}) &&
-           tokens[name].span.end == tokens[name + 1].span.begin &&
-           tokens[name + 1].span.end == tokens[name + 2].span.begin;
-  };
-  const auto whole = [&](std::size_t name) {
-    Span all = tokens[name].span;
-    all.end = tokens[name + 2].span.end;
-    return all;
-  };
-  if (at + 4 >= tokens.size() || !is_torn(at + 1) ||
-      !declares(tokens[at].kind, tokens[at + 4].kind))
-    return;
-  const std::string word(source.text(whole(at + 1)));
-  std::string better = word;
-  std::ranges::replace(better, '-', '_');
-  Diagnostic& message = diagnostics.report(Code::E0001, "a name has only letters, digits and `_`");
-  message.label(whole(at + 1)).helps("write `" + better + "`");
-  constexpr std::size_t most = 4;  // places shown
-  std::size_t places = 0;
-  for (std::size_t use = 0; use < tokens.size(); ++use) {
-    if (!is_torn(use) || source.text(whole(use)) != word) continue;
-    message.fix(whole(use), better, Applicability::likely);
-    if (use != at + 1 && ++places < most) message.label(whole(use), "and here", false);
-    tokens[use].span = whole(use);
-    tokens.erase(tokens.begin() + static_cast<std::ptrdiff_t>(use) + 1,
-                 tokens.begin() + static_cast<std::ptrdiff_t>(use) + 3);
-  }
-}
-
-}  // namespace
-
 void mend_heads(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
   for (std::size_t at = 0; at + 1 < tokens.size(); ++at) {
-    if (!starts_line(tokens, at)) continue;
-    mend_order(tokens, at, source, diagnostics);
-    mend_time(tokens, at, source, diagnostics);
-    mend_given(tokens, at, source, diagnostics);
-    mend_torn_name(tokens, at, source, diagnostics);
-    if (tokens[at].kind != Kinds::BEHAVIOR) continue;
+    if (tokens[at].kind != Kinds::BEHAVIOR || !starts_line(tokens, at)) continue;
     const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(at) + 1;
     const auto end =
         std::find_if(begin, tokens.end(), [](const Token& token) { return ends_head(token.kind); });

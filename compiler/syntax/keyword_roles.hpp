@@ -41,6 +41,9 @@ struct Keyword {
 // The roles of a token. Keywords, operators and brackets have roles, other tokens none.
 [[nodiscard]] unsigned roles_of(TokenKind kind);
 
+// True when `behind` can follow the name in a declaration that begins with `first`.
+[[nodiscard]] bool declares(TokenKind first, TokenKind behind);
+
 // The keyword with one of `roles` that is nearest to a misspelt word; null when none is near.
 [[nodiscard]] const Keyword* nearest_keyword(std::string_view word, unsigned roles);
 

@@ -147,4 +147,25 @@ std::string describe(TokenKind kind) {
   return is_phrase ? std::string(name) : "`" + std::string(name) + "`";
 }
 
+bool declares(TokenKind first, TokenKind behind) {
+  switch (first) {
+    case Kinds::REMEMBER:
+    case Kinds::LET:
+      return behind == Kinds::EQUAL;
+    case Kinds::STATE:
+    case Kinds::LIST:
+      return behind == Kinds::COLON;
+    case Kinds::FEELING:
+      return behind == Kinds::FROM;
+    case Kinds::TIMER:
+    case Kinds::DEFINE:
+      return behind == Kinds::NEWLINE || behind == Kinds::WITH;
+    case Kinds::CHECK:
+    case Kinds::MOTION:
+      return behind == Kinds::OF;
+    default:
+      return false;
+  }
+}
+
 }  // namespace robosync::compiler

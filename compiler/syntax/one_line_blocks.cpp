@@ -12,17 +12,15 @@
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/sorting.hpp"
 #include "compiler/syntax/blocks.hpp"
+#include "compiler/syntax/condition_behind.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
+#include "compiler/syntax/rewritten.hpp"
 #include "compiler/syntax/word_list.hpp"
 
 namespace robosync::compiler {
 namespace {
 
 constexpr std::string_view kPrints = "PRINT PRINTLN PRINTF LOG";
-
-struct Range {
-  std::size_t begin = 0, end = 0;
-};
 
 // A statement as RSL writes it.
 struct Statement {
@@ -34,8 +32,8 @@ struct Statement {
 
 class OneLineBlock {
 public:
-  OneLineBlock(const Tokens& tokens, const SourceFile& source, const Diagnostics& said, Range line,
-               bool is_outside)
+  OneLineBlock(const Tokens& tokens, const SourceFile& source, const Diagnostics& said,
+               TokenRange line, bool is_outside)
       : tokens_(tokens), source_(source), said_(said), line_(line), is_outside_(is_outside) {}
 
   // Has it several habits, and nothing that is unknown in RSL?
@@ -47,7 +45,7 @@ public:
       ++then_;
     if (then_ == line_.end) then_ = comma();
     closed_ = is(line_.end - 1, Kinds::END);
-    const Range body{then_ + 1, closed_ ? line_.end - 1 : line_.end};
+    const TokenRange body{then_ + 1, closed_ ? line_.end - 1 : line_.end};
     if (then_ == line_.begin + 1 || body.begin >= body.end || !(closed_ || is_basic()))
       return false;
     std::size_t other = body.begin;
@@ -85,7 +83,7 @@ public:
     Token first = tokens_[line_.begin];
     if (is_rule()) first.kind = Kinds::WHEN;
     tokens.push_back(first);
-    const Range asked = asked_for();
+    const TokenRange asked = asked_for();
     for (std::size_t at = asked.begin; at < asked.end; ++at)
       tokens.push_back(tokens_[at]);
     tokens.push_back({Kinds::DO, tokens_[then_].span});
@@ -104,7 +102,7 @@ private:
   [[nodiscard]] std::string_view text(std::size_t at) const {
     return source_.text(tokens_[at].span);
   }
-  [[nodiscard]] Span span(Range range) const {
+  [[nodiscard]] Span span(TokenRange range) const {
     Span all = tokens_[range.begin].span;
     all.end = std::max(all.end, tokens_[range.end - 1].span.end);
     return all;
@@ -142,15 +140,15 @@ private:
   }
 
   // Without the brackets around all of it.
-  [[nodiscard]] Range asked_for() const {
-    const Range all{line_.begin + 1, then_};
+  [[nodiscard]] TokenRange asked_for() const {
+    const TokenRange all{line_.begin + 1, then_};
     if (!is(all.begin, Kinds::OPEN) || !is(all.end - 1, Kinds::CLOSE)) return all;
     int open = 0;
     for (std::size_t at = all.begin; at + 1 < all.end; ++at) {
       open += is(at, Kinds::OPEN) ? 1 : is(at, Kinds::CLOSE) ? -1 : 0;
       if (open == 0) return all;
     }
-    return all.begin + 2 < all.end ? Range{all.begin + 1, all.end - 1} : all;
+    return all.begin + 2 < all.end ? TokenRange{all.begin + 1, all.end - 1} : all;
   }
   [[nodiscard]] std::string condition() const { return mended_text(asked_for()); }
 
@@ -172,7 +170,7 @@ private:
   }
 
   // The source text, with the fixes of the lexer.
-  [[nodiscard]] std::string mended_text(Range range) const {
+  [[nodiscard]] std::string mended_text(TokenRange range) const {
     const Span all = span(range);
     std::string mended(source_.text(all));
     std::vector<Fix> fixes;
@@ -187,7 +185,7 @@ private:
 
   // ---- statements
 
-  [[nodiscard]] bool read_statements(Range range, std::vector<Statement>& into) const {
+  [[nodiscard]] bool read_statements(TokenRange range, std::vector<Statement>& into) const {
     while (range.begin < range.end) {
       std::size_t end = range.begin + 1;
       while (end < range.end && !ends_with_semicolon(end - 1))
@@ -209,7 +207,7 @@ private:
     return (roles_of(tokens_[at].kind) & role::opens) != 0 && !is(at, Kinds::AT);
   }
 
-  [[nodiscard]] std::optional<Statement> statement(Range range) const {
+  [[nodiscard]] std::optional<Statement> statement(TokenRange range) const {
     for (std::size_t at = range.begin; at < range.end; ++at)
       if (opens_block(at)) return std::nullopt;
     if (auto changed = assignment(range)) return changed;
@@ -225,13 +223,13 @@ private:
     return Statement{tokens_of(range), mended_text(range)};
   }
 
-  [[nodiscard]] Tokens tokens_of(Range range) const {
+  [[nodiscard]] Tokens tokens_of(TokenRange range) const {
     return {tokens_.begin() + static_cast<std::ptrdiff_t>(range.begin),
             tokens_.begin() + static_cast<std::ptrdiff_t>(range.end)};
   }
 
   // `y = 5`, `y += 1`, `y++`
-  [[nodiscard]] std::optional<Statement> assignment(Range range) const {
+  [[nodiscard]] std::optional<Statement> assignment(TokenRange range) const {
     const std::size_t sign = range.begin + 1;
     if (!is(range.begin, Kinds::NAME) || sign >= range.end) return std::nullopt;
     if (is(sign, Kinds::EQUAL)) return assignment("SET", "TO", range, sign + 1);
@@ -242,7 +240,7 @@ private:
     return twice ? assignment(verb, "BY", range, sign + 2) : std::nullopt;
   }
   [[nodiscard]] std::optional<Statement> assignment(std::string_view verb,
-                                                    std::string_view preposition, Range range,
+                                                    std::string_view preposition, TokenRange range,
                                                     std::size_t value) const {
     const Token name = tokens_[range.begin];
     const bool counts = value == range.end, sets = verb == "SET";
@@ -262,7 +260,7 @@ private:
   }
 
   // `PRINT "hi"`, `print("hi")`
-  [[nodiscard]] std::optional<Statement> print(Range range) const {
+  [[nodiscard]] std::optional<Statement> print(TokenRange range) const {
     if (!is(range.begin, Kinds::NAME) || !has_word(kPrints, text(range.begin))) return std::nullopt;
     const bool brackets = is(range.begin + 1, Kinds::OPEN);
     const std::size_t said = range.begin + (brackets ? 2 : 1);
@@ -310,74 +308,11 @@ private:
   const Tokens& tokens_;
   const SourceFile& source_;
   const Diagnostics& said_;
-  Range line_;
+  TokenRange line_;
   bool is_outside_;
   std::size_t then_ = 0;
   bool closed_ = false;
   std::vector<Statement> main_, else_;
-};
-
-}  // namespace
-
-namespace {
-
-// `STOP arms WHEN x > 3` in a block: the condition stands behind its command. Returns the line in the right order, or nothing.
-Tokens in_order(const Tokens& tokens, Range line, const SourceFile& source,
-                Diagnostics& diagnostics) {
-  const Token& first = tokens[line.begin];
-  const auto is_command =
-      is_one_of(first.kind, {Kinds::NAME, Kinds::STOP, Kinds::SET, Kinds::LOG, Kinds::RAISE});
-  std::size_t asks = line.begin + 1;
-  while (asks < line.end && !is_one_of(tokens[asks].kind, {Kinds::WHEN, Kinds::IF}))
-    ++asks;
-  const auto begin = tokens.begin();
-  const auto at = [&](std::size_t index) { return begin + static_cast<std::ptrdiff_t>(index); };
-  const bool has_block = std::any_of(at(line.begin), at(line.end), [](const Token& token) {
-    return is_one_of(token.kind, {Kinds::DO, Kinds::THEN, Kinds::ELSE, Kinds::ELSE_IF,
-                                  Kinds::OPTION, Kinds::RESUME, Kinds::END});
-  });
-  if (!is_command || asks + 1 >= line.end || has_block) return {};
-  const auto text = [&](std::size_t from, std::size_t to) {
-    return source.text({first.span.file, tokens[from].span.begin, tokens[to - 1].span.end});
-  };
-  const std::string better =
-      fmt::format("IF {} DO {} END", text(asks + 1, line.end), text(line.begin, asks));
-  Span end = tokens[line.end - 1].span;
-  diagnostics.report(Code::E0001, "a condition stands before its command, not behind it")
-      .label({end.file, tokens[asks].span.begin, end.end})
-      .helps(fmt::format("write `{}`", better))
-      .fix({end.file, first.span.begin, end.end}, better, Applicability::likely);
-  end.begin = end.end;
-  Tokens mended{{Kinds::IF, tokens[asks].span}};
-  mended.insert(mended.end(), at(asks + 1), at(line.end));
-  mended.push_back({Kinds::DO, end});
-  mended.insert(mended.end(), at(line.begin), at(asks));
-  mended.push_back({Kinds::END, end});
-  return mended;
-}
-
-// The tokens with some lines written in another way.
-class Rewritten {
-public:
-  explicit Rewritten(Tokens& tokens) : tokens_(tokens) {}
-
-  // From `at` on the tokens are others. Before that, they are kept.
-  Tokens& other(std::size_t at) {
-    if (!begun_) mended_.assign(tokens_.begin(), tokens_.begin() + static_cast<std::ptrdiff_t>(at));
-    begun_ = true;
-    return mended_;
-  }
-  void keep(std::size_t at) {
-    if (begun_) mended_.push_back(tokens_[at]);
-  }
-  void finish() {
-    if (begun_) tokens_ = std::move(mended_);
-  }
-
-private:
-  Tokens& tokens_;
-  Tokens mended_;
-  bool begun_ = false;
 };
 
 }  // namespace
@@ -401,7 +336,7 @@ std::vector<Span> mend_one_line_blocks(Tokens& tokens, const SourceFile& source,
       places.push_back(line.place());
       at = end;
     } else if (!outside && block != Kinds::TEST && block != Kinds::SAFETY) {
-      const Tokens mended = in_order(tokens, {at, end}, source, diagnostics);
+      const Tokens mended = condition_first(tokens, {at, end}, source, diagnostics);
       if (!mended.empty()) {
         Tokens& into = rewritten.other(at);
         into.insert(into.end(), mended.begin(), mended.end());

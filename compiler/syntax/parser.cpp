@@ -17,8 +17,10 @@
 #include "compiler/syntax/indented_blocks.hpp"
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
+#include "compiler/syntax/line_starts.hpp"
 #include "compiler/syntax/reader.hpp"
 #include "compiler/syntax/repair.hpp"
+#include "compiler/syntax/torn_names.hpp"
 
 namespace robosync::compiler {
 
@@ -128,6 +130,8 @@ public:
     find_strange_lines();
     mend_foreign_words(tokens_, source_, robot_, diagnostics_);
     mend_indented_blocks(tokens_, source_, diagnostics_);
+    mend_line_starts(tokens_, source_, diagnostics_);
+    mend_torn_names(tokens_, source_, diagnostics_);
     mend_heads(tokens_, source_, diagnostics_);
     if (robot_ != nullptr) mend_robot_names(tokens_, source_, *robot_);
     mend_names(tokens_, source_, diagnostics_);
@@ -139,7 +143,7 @@ public:
       const auto end = tokens_.begin() + static_cast<std::ptrdiff_t>(region.end);
       piece_.assign(begin, end);
       const bool goes_on = parse_piece(piece_);
-      if (diagnostics_.errors() > 0)
+      if (diagnostics_.has_errors())
         diagnostics_.doubt({file_, begin->span.begin, std::prev(end)->span.end});
       if (!goes_on) break;
     }

@@ -85,10 +85,12 @@ private:
           {tokens_.front().span.file, begin, begin + static_cast<std::uint32_t>(line.size())});
     }
     if (places_.size() == before) return;
+    auto fence = places_.cbegin() + static_cast<std::ptrdiff_t>(before);
     std::erase_if(tokens_, [&](const Token& token) {
-      return token.kind != Kinds::NEWLINE && std::ranges::any_of(places_, [&](Span place) {
-               return place.begin <= token.span.begin && token.span.begin < place.end;
-             });
+      while (fence != places_.cend() && fence->end <= token.span.begin)
+        ++fence;
+      return fence != places_.cend() && fence->begin <= token.span.begin &&
+             token.kind != Kinds::NEWLINE;
     });
     report(before, "``` marks a program in a page, and does not belong to it");
   }
