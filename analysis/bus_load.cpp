@@ -15,18 +15,17 @@ std::uint32_t times_in_window(const vm::Sensor& sensor, std::uint32_t window_us)
 }
 
 constexpr std::uint32_t kTickUs = 1000;
-constexpr std::uint32_t kOtherWorkUs = 100;  // as in policy::bus_window_us()
 
 }  // namespace
 
 std::uint32_t answered_in_us(const vm::Image& image, const policy::BoardCosts& board,
                              const vm::Sensor& sensor) {
   const std::uint32_t window_us = policy::bus_window_us(board.bus_ahead_ms);
-  std::uint32_t us = kOtherWorkUs + kTickUs;
+  std::uint32_t us = policy::kBeforeBusUs + kTickUs;
   for (const vm::Sensor& other : image.sensors)
     if (other.bus == sensor.bus && vm::is_on_spi(other.driver) == vm::is_on_spi(sensor.driver))
       us += policy::bus_us(other, board) * times_in_window(other, window_us);
-  return std::clamp(us, board.bus_ahead_ms * kTickUs, window_us + kOtherWorkUs);
+  return std::clamp(us, board.bus_ahead_ms * kTickUs, window_us + policy::kBeforeBusUs);
 }
 
 std::vector<BusLoad> overloaded_buses(const vm::Image& image, const policy::BoardCosts& board) {

@@ -26,8 +26,7 @@ std::vector<Contributor> loads_of(const TaskSet& set, Instructions per_ms) {
 
 // For an algorithm whose input is sampled, counts from that sample; for a sensor with an echo, of sound or
 // light, from its pulse.
-[[gnu::noinline]] ResponseTime from_the_reading(const TaskSet& set, std::size_t source,
-                                                Priorities priorities) {
+ResponseTime from_the_reading(const TaskSet& set, std::size_t source, Priorities priorities) {
   ResponseTime response = response_time_of(set, source, priorities);
   Instructions late = set.sources[source].jitter;
   if (ResponseTime whole = response_time_from_asking(set, source, priorities);

@@ -266,9 +266,7 @@ private:
   Instructions blocking_ = 0;
 };
 
-// Not inlined: it is much code.
-[[gnu::noinline]] ResponseTime solve(const TaskSet& set, std::size_t mine, Priorities priorities,
-                                     Chain chain) {
+ResponseTime solve(const TaskSet& set, std::size_t mine, Priorities priorities, Chain chain) {
   return Analysis(set, mine, priorities, chain).solve();
 }
 

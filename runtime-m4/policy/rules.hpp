@@ -38,10 +38,13 @@ inline constexpr std::uint32_t kLeastPauseMs = kSetpointPeriodMs;
 // Ticks (of 1 ms) that a sensor waits at most for a bus transfer after its sample is due.
 inline constexpr std::uint32_t kBusTicks = 2;
 
+// Left for work that the processor does before it starts a bus, in microseconds.
+inline constexpr std::uint32_t kBeforeBusUs = 100;
+
 // All transfers that are requested from a bus at the same time must end within this time, in microseconds. They are requested
-// `ahead_ms` ahead (bus_ahead_ms of the board's costs). 100 µs are left for work that the processor does first.
+// `ahead_ms` ahead (bus_ahead_ms of the board's costs).
 constexpr std::uint32_t bus_window_us(std::uint32_t ahead_ms) {
-  return (ahead_ms + kBusTicks) * 1000 - 100;
+  return (ahead_ms + kBusTicks) * 1000 - kBeforeBusUs;
 }
 
 // From the trigger pulse of an echo sensor to its sample. If there is no echo within 38 ms, none comes.
