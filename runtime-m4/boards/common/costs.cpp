@@ -2,11 +2,12 @@
 // (asking_board.hpp).
 #include "runtime-m4/boards/costs.hpp"
 
+#include "runtime-m4/boards/common/asking_board.hpp"
+
 static_assert(robosync::boards::kCosts.instructions_per_ms() > 0);
 
 namespace robosync::boards {
 
-extern const std::uint32_t kBusAheadMs;
 const std::uint32_t kBusAheadMs = kCosts.bus_ahead_ms;
 
 }  // namespace robosync::boards
