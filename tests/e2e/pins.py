@@ -20,6 +20,7 @@ LINES = {
                     {0: 2, 1: 3, 2: 4, 5: 14, 8: 10, 9: 9, 11: 23, 12: 12, 13: 17, 14: 1}.items()},
 }
 VIRTUAL = range(40, 44)  # the mps2-an386's inputs: bits of a word of its memory
+SYST_CSR = 0xE000_E010  # ARMv7-M ARM, B3.3.3; the kernel enables the timer when all memory has its first values
 
 
 class Pins:
@@ -39,6 +40,10 @@ class Pins:
         self._socket.settimeout(BOOT_SECONDS)
         self._lines = self._socket.makefile("rw", encoding="ascii")
         self._word = (1 << len(VIRTUAL)) - 1
+        while NAME not in LINES and not self.word(SYST_CSR) & 1:  # before, what is written to its memory would be lost
+            if time.monotonic() > give_up:
+                raise RuntimeError("the board does not start")
+            time.sleep(0.02)
 
     def set(self, pin, high):
         if NAME in LINES:

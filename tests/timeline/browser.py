@@ -29,8 +29,8 @@ class Browser:
         os.close(from_browser)
         self.orders, self.answers = os.fdopen(write, "wb"), os.fdopen(read, "rb")
         self.session = None
-        (tab,) = [one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "page"]
-        self.session = self.call("Target.attachToTarget", targetId=tab["targetId"], flatten=True)["sessionId"]
+        tab = self.call("Target.createTarget", url="about:blank")["targetId"]  # its own may not be there yet
+        self.session = self.call("Target.attachToTarget", targetId=tab, flatten=True)["sessionId"]
         self.call("Page.enable")
         self.call("Runtime.enable")
         return self
