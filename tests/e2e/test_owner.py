@@ -15,8 +15,8 @@ from support import PROGRAMS
 from tap import Tap
 from test_store import Switched
 
-# Bytes of the link's stack that a signature does not need: an interrupt and a switch store 68 there. test_stacks.py bounds all
-# paths.
+# Bytes of the link's stack that a signature does not need: an interrupt and a switch store 72 there (stack_depth.FRAMES).
+# test_stack_depth.py bounds all paths.
 SPARE = 100
 TRIES = 20
 FAST_LINE = 2_000_000

@@ -53,6 +53,11 @@ class StackDepth(unittest.TestCase):
                     wrong.append((board, thread, needed, there, "FPU" if uses_fpu else "", *way))
         self.assertEqual(wrong, [])
 
+    def test_what_the_idle_thread_does_instead_of_sleeping(self):
+        """Its stack has room for an interrupt and a switch only (port/cortex-m4/hooks.hpp)."""
+        firmware = Firmware(ROOT / "build/m4/robosync.elf")
+        self.assertEqual(firmware.deepest(firmware.entry("robosync_work_instead"))[:2], (0, False))
+
 
 # Code for which the bytes of each function and each call path are known.
 CODE = """

@@ -16,8 +16,12 @@ class Playing:
 
     def __init__(self):
         self._board = Board(icount=FAST)
-        self._player = subprocess.Popen([PLAYER, self._board.port], text=True, stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            self._player = subprocess.Popen([PLAYER, self._board.port], text=True, stdin=subprocess.PIPE,
+                                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        except OSError:
+            self._board.stop()  # it would run for ever
+            raise
 
     def play(self, image, scenario, end_ms):
         """The lines of its trace, and whether they are "whole"; else why not. BoardError when it has come to no end."""
