@@ -13,8 +13,10 @@ target_sources(robosync_compiler_small PRIVATE
   query/configuration_outline.cpp
   query/configuration_scan.cpp
   query/describe.cpp
+  query/expected.cpp
   query/outline.cpp
   query/rename.cpp
+  query/symbols.cpp
   query/walk.cpp
   test_plan/evaluate.cpp
   test_plan/plan.cpp)
@@ -32,7 +34,5 @@ set_source_files_properties(${key_texts} PROPERTIES SKIP_UNITY_BUILD_INCLUSION O
 target_sources(robosync_compiler PRIVATE
   ${key_texts}
   query/collector.cpp
-  query/expected.cpp
-  query/symbols.cpp
   query/tokens.cpp)
 target_link_libraries(robosync_compiler PRIVATE fmt::fmt)

@@ -41,7 +41,6 @@ endforeach()
 target_sources(robosync_compiler PRIVATE
   ${generated}/grammar/rsl_grammar.cpp
   ${generated}/grammar/rsl_lexer.cpp
-  source/character_names.cpp
   source/source_file.cpp
   source/utf8.cpp
   diagnostics/nearest.cpp
@@ -58,6 +57,7 @@ target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${g
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
 # The code that words a mistake is long, runs seldom, and prints at most 20 messages.
 target_sources(robosync_compiler_small PRIVATE
+  source/character_names.cpp
   source/json.cpp
   diagnostics/diagnostic.cpp
   diagnostics/render_human.cpp
