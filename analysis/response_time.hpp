@@ -95,9 +95,6 @@ struct ResponseTime {
   Instructions time = 0;  // from the source's release to the command; if unbounded, so far
   bool bounded = false;   // false: the processor never finishes what outranks it
   std::vector<Contributor> contributors;
-  [[nodiscard]] bool in_time(const Source& source) const {
-    return bounded && time <= source.period;
-  }
 };
 
 // Computes the jitter of the sources that follow others. Before response_time_of().

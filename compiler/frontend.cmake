@@ -68,6 +68,7 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/condition_behind.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
+  syntax/foreign_ranges.cpp
   syntax/foreign_text.cpp
   syntax/foreign_words.cpp
   syntax/format.cpp

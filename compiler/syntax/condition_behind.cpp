@@ -24,7 +24,9 @@ Tokens condition_first(const Tokens& tokens, TokenRange line, const SourceFile& 
     return is_one_of(token.kind, {Kinds::DO, Kinds::THEN, Kinds::ELSE, Kinds::ELSE_IF,
                                   Kinds::OPTION, Kinds::RESUME, Kinds::END});
   });
-  if (!is_command || asks + 1 >= line.end || has_block) return {};
+  // `points IF > 4` is another slip.
+  if (!is_command || asks + 1 >= line.end || has_block || is_relation(tokens[asks + 1].kind))
+    return {};
   const auto text = [&](std::size_t from, std::size_t to) {
     return source.text({first.span.file, tokens[from].span.begin, tokens[to - 1].span.end});
   };

@@ -15,6 +15,7 @@
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/blocks.hpp"
 #include "compiler/syntax/examples.hpp"
+#include "compiler/syntax/foreign_ranges.hpp"
 #include "compiler/syntax/functions.hpp"
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
@@ -123,12 +124,17 @@ public:
     constexpr std::size_t most = 3;  // places shown
     const Examples examples(tokens_, source_, robot_);
     Diagnostic& message = diagnostics.report(
-        Code::E0001, "this is written in another programming language, not in RSL");
+        Code::E0001, "this is written in another language, not in RSL");
     const std::size_t shown = std::min(found.size(), most);
     for (std::size_t at = 0; at < shown; ++at)
       message.label(first_line(found[at]), at == 0 ? "" : "and here", at == 0);
     message.appears_in_more(found.size() - shown);
-    for (const Said& said : hints(found)) {
+    const std::vector<Said> all = hints(found);
+    if (all.empty())
+      message.helps(fmt::format(
+          "a rule of RSL is `WHEN {} DO {} END`; robot.json says what parts the robot has",
+          examples.condition({}), examples.command({}, true)));
+    for (const Said& said : all) {
       const Hint& hint = kHints[said.hint];
       const std::string name = hint.gap == Gap::condition ? examples.condition({})
                                : hint.gap == Gap::command ? examples.command(said.about, true)
@@ -143,6 +149,7 @@ private:
   // Can no line of RSL look like this?
   [[nodiscard]] bool is_sure(const TextLine& line) const {
     if (line.number > 0) return has_word(kNumbered, line.word);
+    if (is_markup(line) || is_item(line) || has_keys(line)) return true;
     if (line.keyword != nullptr && line.called() == line.word) return false;
     if (line.begins_with({Kinds::FROM})) return line.text.find(" import ") != std::string::npos;
     if (line.begins_with({Kinds::FOR})) return ascii::trimmed(line.behind_word()).starts_with('(');
@@ -152,6 +159,31 @@ private:
     if (name.empty()) return false;
     return name != line.word ||
            !(is_defined(name) || is_verb(name) || find_function(name) != nullptr);
+  }
+
+  // `<robot name="bot">`
+  [[nodiscard]] static bool is_markup(const TextLine& line) {
+    return line.text.size() > 2 && line.text.front() == '<' && line.ends_with('>') &&
+           (ascii::is_letter(line.text[1]) || line.text[1] == '/' || line.text[1] == '!' ||
+            line.text[1] == '?');
+  }
+  // `name: touch` in YAML, and in RSL behind STATE or LIST only
+  [[nodiscard]] static bool is_key(const TextLine& line) {
+    return line.keyword == nullptr && !line.word.empty() &&
+           ascii::trimmed(line.behind_word()).starts_with(':');
+  }
+  // `- name: touch`
+  [[nodiscard]] static bool is_item(const TextLine& line) {
+    if (!line.text.starts_with("- ")) return false;
+    const std::string_view item = ascii::trimmed(line.text.substr(2));
+    const std::string_view rest = item.substr(word_length(item));
+    return rest.size() < item.size() && (rest == ":" || rest.starts_with(": "));
+  }
+  // `sensors:` above a line that is indented, and has a key
+  [[nodiscard]] bool has_keys(const TextLine& line) const {
+    const TextLine* const below = &line + 1;
+    return is_key(line) && line.ends_with(':') && below < lines_.data() + lines_.size() &&
+           below->indentation > line.indentation && (is_key(*below) || is_item(*below));
   }
 
   // `when green flag clicked`, `on button A pressed`
@@ -188,7 +220,8 @@ private:
       return false;
     const std::string_view rest = ascii::trimmed(line.behind_word());
     return std::string_view(";{:").find(line.text.back()) != std::string_view::npos ||
-           is_definition(line) || rest.starts_with('=') || has_word("import return", line.word);
+           is_key(line) || is_definition(line) || rest.starts_with('=') ||
+           has_word("import return", line.word);
   }
 
   [[nodiscard]] static bool is_definition(const TextLine& line) {
@@ -337,8 +370,9 @@ bool may_be_foreign(const Tokens& tokens, const SourceFile& source) {
     if (named && last && has_word(kHatEnds, word)) return true;
     if (!starts_line(tokens, at)) continue;
     const std::string_view rest = source.text().substr(tokens[at].span.end, 1);
-    if (is_one_of(tokens[at].kind, {Kinds::FROM, Kinds::FOR, Kinds::QUANTITY}) ||
-        (named && (rest == "(" || rest == "." || has_word(kForeignHeads, word))))
+    if (is_one_of(tokens[at].kind,
+                  {Kinds::FROM, Kinds::FOR, Kinds::QUANTITY, Kinds::LESS, Kinds::MINUS}) ||
+        (named && (rest == "(" || rest == "." || rest == ":" || has_word(kForeignHeads, word))))
       return true;
   }
   return false;
@@ -392,6 +426,7 @@ Tokens lex_but_foreign_text(const SourceFile& source, FileId file, const Vocabul
     leave_out(tokens, places);
   }
   for (const auto& more : {leave_out_pasted(tokens, source, diagnostics),
+                           mend_foreign_ranges(tokens, source, diagnostics),
                            mend_one_line_blocks(tokens, source, said, diagnostics)})
     places.insert(places.end(), more.begin(), more.end());
   for (const Diagnostic& diagnostic : said.all()) {

@@ -1,5 +1,5 @@
 // See pasted.hpp. A line of RSL may begin with a number or a sign only where it continues the one above, so what counts is a line in
-// which a word such as WHEN follows.
+// which a word such as WHEN follows, or one that stands below DO.
 #include "compiler/syntax/pasted.hpp"
 
 #include <algorithm>
@@ -46,6 +46,13 @@ private:
            (roles_of(tokens_[at].kind) & (role::item | role::part)) != 0;
   }
 
+  // Does a command have to stand in this line?
+  [[nodiscard]] bool is_behind_do(std::size_t at) const {
+    while (at > 0 && tokens_[at - 1].kind == Kinds::NEWLINE)
+      --at;
+    return at > 0 && is_one_of(tokens_[at - 1].kind, {Kinds::DO, Kinds::THEN, Kinds::ELSE});
+  }
+
   void leave_out_marks(TokenKind kind) {
     const std::size_t before = places_.size();
     bool sure = false;
@@ -56,7 +63,7 @@ private:
         kept.push_back(tokens_[at++]);
         continue;
       }
-      sure = sure || begins_item(behind);
+      sure = sure || begins_item(behind) || is_behind_do(at);
       Span place = tokens_[at].span;
       place.end = tokens_[behind - 1].span.end;
       places_.push_back(place);

@@ -1,4 +1,4 @@
-// `my-count`, which is a difference in RSL. If a line declares it, it is one name in the whole text, and one error.
+// `my-count`, which is a difference in RSL, and `my count`. If a line declares it, it is one name in the whole text, and one error.
 #pragma once
 
 #include "compiler/diagnostics/diagnostic.hpp"

@@ -21,9 +21,9 @@ std::vector<std::string> devices_at(unsigned address) {
     const compiler::Device* device = compiler::find_device(text.name, text.is_sensor);
     if (device == nullptr || !device->has_driver || device->type != "I2C") continue;
     const auto at = static_cast<std::uint16_t>(address);
-    const bool usual = device->name == "pca9685_servo" ? at == vm::kFirstChipAddress
-                       : device->name == "ssd1306"     ? at == vm::kFirstDisplayAddress
-                                                       : false;
+    const vm::DriverId driver = device->actuator.driver;
+    const bool usual = (vm::drives_channel(driver) && at == vm::kFirstChipAddress) ||
+                       (vm::drives_screen(driver) && at == vm::kFirstDisplayAddress);
     if (usual || (!device->addresses.empty() && device->can_have(at)))
       found.push_back(device->name);
   }
