@@ -123,8 +123,8 @@ public:
   void report(const std::vector<Span>& found, Diagnostics& diagnostics) const {
     constexpr std::size_t most = 3;  // places shown
     const Examples examples(tokens_, source_, robot_);
-    Diagnostic& message = diagnostics.report(
-        Code::E0001, "this is written in another language, not in RSL");
+    Diagnostic& message =
+        diagnostics.report(Code::E0001, "this is written in another language, not in RSL");
     const std::size_t shown = std::min(found.size(), most);
     for (std::size_t at = 0; at < shown; ++at)
       message.label(first_line(found[at]), at == 0 ? "" : "and here", at == 0);
