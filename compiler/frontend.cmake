@@ -47,7 +47,6 @@ target_sources(robosync_compiler PRIVATE
   diagnostics/plain_text.cpp
   syntax/blocks.cpp
   syntax/builder.cpp
-  syntax/edit.cpp
   syntax/keywords.cpp
   syntax/layout.cpp
   syntax/lexer_state.cpp
@@ -66,6 +65,7 @@ target_sources(robosync_compiler_small PRIVATE
   diagnostics/snippet.cpp
   syntax/breaks.cpp
   syntax/condition_behind.cpp
+  syntax/edit.cpp
   syntax/examples.cpp
   syntax/foreign_habits.cpp
   syntax/foreign_ranges.cpp
