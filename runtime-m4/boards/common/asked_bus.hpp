@@ -1,4 +1,4 @@
-// An I2C bus whose master has DMA. The processor starts a transfer and an interrupt reports its end, so no thread waits.
+// An I2C bus whose master works by itself, by DMA or interrupts, and reports the end of a transfer, so no thread waits for one.
 // Transfers are therefore asked ahead (boards::Board::ask_buses()). They are queued as requests (bus_requests.hpp) and run one after
 // the other, in the order in which they were asked. A request may have a first transfer, which selects a page (select()) or reads other
 // registers (read_two()); no other request comes between the two.

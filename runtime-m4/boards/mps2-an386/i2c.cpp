@@ -184,7 +184,11 @@ Transfer LineMaster::do_special() {
     case Next::stop_and_start:
       release(kI2cData);
       half_bit();
-      return data_is_high() ? send_start() : end(false);
+      if (data_is_high()) return send_start();
+      // The clock before was the last of a byte, which the device acknowledges with this one.
+      pull(kI2cClock);
+      pull(kI2cData);
+      return stretched();
     case Next::bit:
     case Next::stop:
       break;

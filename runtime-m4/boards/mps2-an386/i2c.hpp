@@ -65,7 +65,7 @@ private:
   std::byte* in_end_ = nullptr;
   std::uint32_t frame_ =
       0;  // from its top: the bits to send; at its bottom: those that have come, below a 1
-  std::uint16_t patience_ = 0;  // bits for which devices may still hold the clock low
+  std::uint16_t patience_ = 0;  // bits for which devices may still hold a line low
   std::uint8_t address_ = 0;    // as sent, with the direction of the transfer
   Next next_ = Next::bit;
   User user_ = User::nobody;

@@ -2,6 +2,7 @@
 // device stretches the clock or holds a line, and none minds when the lines change.
 #include <array>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -101,6 +102,8 @@ struct BitLines : tests::RegisterModel {
   BitDevice device;
   bool clock = false, data = false;  // as the master leaves them; pulled low at first
   bool on = false;                   // the timer
+  std::function<void()>
+      between{};  // what an interrupt does between two bits of the store's transfer
 
   bool clock_line() const { return clock && !device.holds_clock; }
   bool data_line() const { return data && !device.pulls_data && !device.holds_data; }
@@ -116,6 +119,8 @@ struct BitLines : tests::RegisterModel {
     if ((value & 2) != 0) data = level;
     device.see(clock_line(), data_line());
     device.see(clock_line(), data_line());  // what the device has done itself
+    // The master changes the data line last of all, and only while the clock is low.
+    if ((value & 2) != 0 && !clock && between) std::exchange(between, {})();
   }
 };
 
@@ -259,4 +264,60 @@ TEST_CASE("data that stays low fails each transfer at once") {
   CHECK_FALSE(bus.ask(0x10, 1));
   bus.run();
   CHECK(bus.collect(0x10, 1));
+}
+
+TEST_CASE("data that is low at the second start fails the transfer") {
+  LineBus bus;
+  CHECK_FALSE(bus.ask(0x10, 1));
+  bus.run(9 + 9);
+  bus.device.holds_data = true;
+  CHECK(bus.run() == 1);
+  CHECK_FALSE(bus.collect(0x10, 1));
+  bus.device.holds_data = false;
+  bus.device.see(bus.clock_line(), bus.data_line());
+  CHECK_FALSE(bus.ask(0x10, 1));
+  bus.run();
+  CHECK(bus.collect(0x10, 1));
+}
+
+TEST_CASE("the store's transfer gives way at each of its bits, and to none it comes before") {
+  constexpr std::array kWritten = {std::byte{0x30}, std::byte{0xA5}, std::byte{0x5A}};
+  constexpr unsigned kBits = (1 + kWritten.size()) * 9;
+  const auto store = [&](LineBus& bus) {
+    return bus.bus.master().transfer_between(kBitDevice, kWritten, {});
+  };
+  LineBus whole;
+  CHECK(store(whole) == Store::Outcome::done);
+  CHECK(whole.is_at_rest());
+  CHECK(whole.device.written == std::vector<std::uint8_t>{0xA5, 0x5A});
+  for (unsigned bit = 0; bit < kBits; ++bit) {
+    CAPTURE(bit);
+    LineBus bus;
+    unsigned bits = 0;
+    std::function<void()> count = [&] {
+      if (bits++ == bit)
+        CHECK_FALSE(bus.ask(0x20, 2));
+      else
+        bus.between = count;
+    };
+    bus.between = count;
+    CHECK(store(bus) == Store::Outcome::taken);
+    CHECK(store(bus) == Store::Outcome::taken);
+    bus.run();
+    CHECK(bus.is_at_rest());
+    CHECK((bus.device.starts == 3 && bus.device.stops == 2));
+    CHECK(bus.collect(0x20, 2));
+    CHECK(bus.has(0x20, 2));
+    CHECK(store(bus) == Store::Outcome::done);
+  }
+}
+
+TEST_CASE("data that stays low while the store gives way fails the transfer in the end") {
+  LineBus bus;
+  bus.between = [&] { CHECK_FALSE(bus.ask(0x20, 2)); };
+  CHECK(bus.bus.master().transfer_between(kBitDevice, std::array{std::byte{0x30}}, {}) ==
+        Store::Outcome::taken);
+  bus.device.holds_data = true;
+  CHECK(bus.run() == 401);
+  CHECK_FALSE(bus.collect(0x20, 2));
 }
