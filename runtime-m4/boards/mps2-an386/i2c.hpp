@@ -33,8 +33,8 @@ public:
   static void drive_clock(bool high);
   static void half_bit();
 
-  // A transfer for the store; both lines are high (AskedBus::free()). `taken`: another one took the bus, or has it. None may come
-  // during a read: a sending device may hold the data line.  [the thread with the lowest rank]
+  // A transfer for the store; both lines are high (AskedBus::free()). `taken`: another one took the bus, or has it.
+  //  [the thread with the lowest rank]
   [[nodiscard]] Store::Outcome transfer_between(std::uint8_t address,
                                                 std::span<const std::byte> out,
                                                 std::span<std::byte> in);

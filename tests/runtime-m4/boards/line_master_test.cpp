@@ -321,3 +321,28 @@ TEST_CASE("data that stays low while the store gives way fails the transfer in t
   CHECK(bus.run() == 401);
   CHECK_FALSE(bus.collect(0x20, 2));
 }
+
+TEST_CASE("the store's read gives way at each of its bits, whatever the device sends") {
+  constexpr unsigned kBits = 9 + 9 + 1 + 9 + 2 * 9;
+  for (const unsigned sent : {0x00U, 0xFFU, 0xA5U})
+    for (unsigned bit = 0; bit < kBits; ++bit) {
+      CAPTURE(sent, bit);
+      LineBus bus;
+      bus.device.registers[0x30] = bus.device.registers[0x31] = static_cast<std::uint8_t>(sent);
+      unsigned bits = 0;
+      std::function<void()> count = [&] {
+        if (bits++ == bit)
+          CHECK_FALSE(bus.ask(0x20, 2));
+        else
+          bus.between = count;
+      };
+      bus.between = count;
+      std::array<std::byte, 2> got{};
+      CHECK(bus.bus.master().transfer_between(kBitDevice, std::array{std::byte{0x30}}, got) ==
+            Store::Outcome::taken);
+      bus.run();
+      CHECK(bus.is_at_rest());
+      CHECK(bus.collect(0x20, 2));
+      CHECK(bus.has(0x20, 2));
+    }
+}
