@@ -1,10 +1,13 @@
 """Headless Chromium, told what to do by the protocol of its developer tools, over pipes."""
 
 import base64
+import contextlib
 import json
 import os
 import subprocess
 import tempfile
+
+SECONDS_TO_END = 20
 
 
 class Browser:
@@ -36,8 +39,15 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.process.kill()
-        self.process.wait()
+        self.session = None
+        # It ends its other processes first. Killed, it would leave them, and they write to its profile for a moment.
+        with contextlib.suppress(RuntimeError, OSError):
+            self.call("Browser.close")
+        try:
+            self.process.wait(SECONDS_TO_END)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
         self.orders.close()
         self.answers.close()
         self.profile.cleanup()

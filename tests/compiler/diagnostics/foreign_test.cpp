@@ -17,8 +17,8 @@ std::string rule(const std::string& line) {
   return "WHEN touch LEVEL < 3 DO\n  " + line + "\nEND\n";
 }
 
-const std::string kForeign = "another language", kAgain = "EVERY 1s DO",
-                  kOnce = "AT START DO", kWhen = "WHEN touch LEVEL < 3 DO", kWait = "WAIT 500ms";
+const std::string kForeign = "another language", kAgain = "EVERY 1s DO", kOnce = "AT START DO",
+                  kWhen = "WHEN touch LEVEL < 3 DO", kWait = "WAIT 500ms";
 
 // Each of them as a pupil would bring it along, from top to bottom.
 const Case kCases[] = {
