@@ -164,10 +164,12 @@ std::vector<Span> mend_foreign_ranges(Tokens& tokens, const SourceFile& source,
   Rewritten rewritten(tokens);
   bool asked = false;
   for (std::size_t at = 0; at < tokens.size(); ++at) {
-    const bool behind_value = at > 0 && is_one_of(tokens[at - 1].kind, {Kinds::NAME, Kinds::CLOSE});
+    const TokenKind kind = tokens[at].kind;
+    const bool behind_value =
+        asked && at > 0 && is_one_of(tokens[at - 1].kind, {Kinds::NAME, Kinds::CLOSE});
     ForeignRange range(tokens, at, source);
-    if (!asked || !behind_value || !range.read()) {
-      asked = asks_after(tokens, at, asked);
+    if (!behind_value || !range.read()) {
+      if (is_keyword(kind) || kind == Kinds::NEWLINE) asked = asks_after(tokens, at, asked);
       rewritten.keep(at);
       continue;
     }
