@@ -9,6 +9,7 @@
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/layout.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 
@@ -32,12 +33,6 @@ constexpr LineShape kShapes[] = {
 #undef WORD
 #undef LINE
 };
-
-// The unit of a written number: the text after its digits.
-std::string_view unit_of(std::string_view number) {
-  number.remove_prefix(std::min(number.find_first_not_of("0123456789."), number.size()));
-  return number;
-}
 
 bool begins_statement(TokenKind kind) {
   return is_one_of(kind, {Kinds::DO, Kinds::ELSE, Kinds::NEWLINE});
@@ -267,7 +262,7 @@ OwnNames::OwnNames(const Tokens& program, const SourceFile& source) {
       case Kinds::REMEMBER:
       case Kinds::FEELING:
         if (program[at + 3].kind == Kinds::QUANTITY)
-          names.push_back({program[at].kind, text(at + 1), unit_of(text(at + 3))});
+          names.push_back({program[at].kind, text(at + 1), written_unit(text(at + 3))});
         break;
       case Kinds::STATE:
         if (program[at + 3].kind == Kinds::NAME)

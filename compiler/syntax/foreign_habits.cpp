@@ -460,8 +460,7 @@ private:
   }
 
   static bool asks(TokenKind kind) {
-    return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::AND,
-                            Kinds::OR, Kinds::NOT, Kinds::UNTIL});
+    return begins_question(kind) || is_one_of(kind, {Kinds::AND, Kinds::OR, Kinds::NOT});
   }
 
   // `3,5%`: the comma touches the numbers on both sides.

@@ -2,7 +2,6 @@
 #include "compiler/syntax/foreign_ranges.hpp"
 
 #include <algorithm>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +10,7 @@
 
 #include "compiler/source/ascii.hpp"
 #include "compiler/syntax/rewritten.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -45,9 +45,8 @@ public:
   }
 
   [[nodiscard]] std::string better() const {
-    const std::string_view last = source_.text(last_.span);
-    const std::string_view unit = has_unit(first_) ? "" : last.substr(digits(last));
-    return fmt::format("IS BETWEEN {}{} AND {}", text(first_), unit, text(last_));
+    return fmt::format("IS BETWEEN {}{} AND {}", text(first_), has_unit(first_) ? "" : unit(last_),
+                       text(last_));
   }
 
   void add_tokens(Tokens& into) const {
@@ -121,13 +120,10 @@ private:
     return true;
   }
 
-  static std::size_t digits(std::string_view number) {
-    return std::min(number.find_first_not_of("0123456789."), number.size());
+  [[nodiscard]] std::string_view unit(const Number& number) const {
+    return written_unit(source_.text(number.span));
   }
-  [[nodiscard]] bool has_unit(const Number& number) const {
-    const std::string_view text = source_.text(number.span);
-    return digits(text) < text.size();
-  }
+  [[nodiscard]] bool has_unit(const Number& number) const { return !unit(number).empty(); }
   [[nodiscard]] std::string text(const Number& number) const {
     return (number.negative ? "-" : "") + std::string(source_.text(number.span));
   }
@@ -142,18 +138,15 @@ private:
   Number first_, last_;
 };
 
-constexpr std::initializer_list<TokenKind> kAsk = {Kinds::WHEN, Kinds::WHILE, Kinds::IF,
-                                                   Kinds::ELSE_IF, Kinds::UNTIL};
-
 // Does a condition go on behind the token? `asked`: it did before.
 bool asks_after(const Tokens& tokens, std::size_t at, bool asked) {
   const auto combines = [&tokens](std::size_t place) {
     return place < tokens.size() && is_one_of(tokens[place].kind, {Kinds::AND, Kinds::OR});
   };
-  if (is_one_of(tokens[at].kind, kAsk)) return true;
+  if (begins_question(tokens[at].kind)) return true;
   if (!asked || is_one_of(tokens[at].kind, {Kinds::DO, Kinds::THEN, Kinds::END})) return false;
   return tokens[at].kind != Kinds::NEWLINE || combines(at - 1) || combines(at + 1) ||
-         is_one_of(tokens[at - 1].kind, kAsk);
+         begins_question(tokens[at - 1].kind);
 }
 
 }  // namespace

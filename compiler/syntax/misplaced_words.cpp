@@ -4,6 +4,7 @@
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
+#include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
 namespace {
@@ -443,10 +444,10 @@ private:
         !is_any_name(stop_ + 1, {"h", "hr", "hour", "min", "minute"}))
       return std::nullopt;
     const std::string_view number = text(stop_ - 1);
-    const std::size_t unit = number.find_first_not_of("0123456789.");
-    if (unit == std::string_view::npos) return std::nullopt;
+    const std::string_view unit = written_unit(number);
+    if (unit.empty()) return std::nullopt;
     Span place = span(stop_ - 1, stop_ + 2);
-    place.begin += static_cast<std::uint32_t>(unit);
+    place.begin += static_cast<std::uint32_t>(number.size() - unit.size());
     report(Code::E0303, "there is no unit `" + std::string(source_.text(place)) + "`", place)
         .helps("speeds are per second, such as `20cm/s` or `30deg/s`");
     return change(stop_ - 1, 3, {missing(Kinds::QUANTITY, stop_ - 1)});

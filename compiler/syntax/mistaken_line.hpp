@@ -126,9 +126,6 @@ protected:
     }
     return false;
   }
-  static bool begins_question(TokenKind kind) {
-    return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::UNTIL});
-  }
 
   // Only commas outside brackets count.
   bool has_comma(std::size_t from, std::size_t to) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <initializer_list>
 #include <vector>
 
@@ -36,6 +37,11 @@ inline bool is_relation(TokenKind kind) {
   return kind >= Kinds::LESS && kind <= Kinds::NOT_EQUAL;
 }
 
+// Does a condition follow?
+inline bool begins_question(TokenKind kind) {
+  return is_one_of(kind, {Kinds::WHEN, Kinds::WHILE, Kinds::IF, Kinds::ELSE_IF, Kinds::UNTIL});
+}
+
 struct Token {
   TokenKind kind = TokenKind{};
   Span span;
@@ -43,6 +49,10 @@ struct Token {
 
 // A piece of the program; its last token is the end of a line.
 using Tokens = std::vector<Token>;
+
+struct TokenRange {  // indices
+  std::size_t begin = 0, end = 0;
+};
 
 // "`WHEN`", "a name", "`<`": the kind as messages show it.
 [[nodiscard]] std::string describe(TokenKind kind);

@@ -189,6 +189,10 @@ std::string_view dimension_phrase(vm::Dimension dimension) {
   return kDimensions[static_cast<std::size_t>(dimension)].phrase;
 }
 
+std::string_view written_unit(std::string_view number) {
+  return number.substr(std::min(number.find_first_not_of("0123456789."), number.size()));
+}
+
 std::optional<Decimal> parse_decimal(std::string_view text) {
   const bool negative = !text.empty() && text.front() == '-';
   if (negative) text.remove_prefix(1);

@@ -27,6 +27,9 @@ struct Unit {
 [[nodiscard]] bool is_of_differences(const Unit& unit);                    // only: false for cm
 [[nodiscard]] std::string_view dimension_phrase(vm::Dimension dimension);  // "a distance"
 
+// The unit of a written number: the text after its digits.
+[[nodiscard]] std::string_view written_unit(std::string_view number);
+
 // A decimal number as written: mantissa / 10^decimals.
 struct Decimal {
   std::int64_t mantissa = 0;

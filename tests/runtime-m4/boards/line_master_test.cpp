@@ -157,6 +157,25 @@ struct LineBus : BitLines {
   }
 };
 
+// A transfer that takes the bus from the store.
+struct SharedBus : LineBus {
+  unsigned bits = 0;
+
+  // Before this bit of the store's transfer.
+  void ask_at(unsigned bit) {
+    between = [this, bit] {
+      if (bits++ != bit) return ask_at(bit);
+      CHECK_FALSE(ask(0x20, 2));
+    };
+  }
+  void check_the_asked() {
+    run();
+    CHECK(is_at_rest());
+    CHECK(collect(0x20, 2));
+    CHECK(has(0x20, 2));
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a read is a bit at each interrupt, and its last byte is not acknowledged") {
@@ -283,38 +302,28 @@ TEST_CASE("data that is low at the second start fails the transfer") {
 TEST_CASE("the store's transfer gives way at each of its bits, and to none it comes before") {
   constexpr std::array kWritten = {std::byte{0x30}, std::byte{0xA5}, std::byte{0x5A}};
   constexpr unsigned kBits = (1 + kWritten.size()) * 9;
-  const auto store = [&](LineBus& bus) {
+  const auto store = [&](SharedBus& bus) {
     return bus.bus.master().transfer_between(kBitDevice, kWritten, {});
   };
-  LineBus whole;
+  SharedBus whole;
   CHECK(store(whole) == Store::Outcome::done);
   CHECK(whole.is_at_rest());
   CHECK(whole.device.written == std::vector<std::uint8_t>{0xA5, 0x5A});
   for (unsigned bit = 0; bit < kBits; ++bit) {
     CAPTURE(bit);
-    LineBus bus;
-    unsigned bits = 0;
-    std::function<void()> count = [&] {
-      if (bits++ == bit)
-        CHECK_FALSE(bus.ask(0x20, 2));
-      else
-        bus.between = count;
-    };
-    bus.between = count;
+    SharedBus bus;
+    bus.ask_at(bit);
     CHECK(store(bus) == Store::Outcome::taken);
     CHECK(store(bus) == Store::Outcome::taken);
-    bus.run();
-    CHECK(bus.is_at_rest());
+    bus.check_the_asked();
     CHECK((bus.device.starts == 3 && bus.device.stops == 2));
-    CHECK(bus.collect(0x20, 2));
-    CHECK(bus.has(0x20, 2));
     CHECK(store(bus) == Store::Outcome::done);
   }
 }
 
 TEST_CASE("data that stays low while the store gives way fails the transfer in the end") {
-  LineBus bus;
-  bus.between = [&] { CHECK_FALSE(bus.ask(0x20, 2)); };
+  SharedBus bus;
+  bus.ask_at(0);
   CHECK(bus.bus.master().transfer_between(kBitDevice, std::array{std::byte{0x30}}, {}) ==
         Store::Outcome::taken);
   bus.device.holds_data = true;
@@ -327,22 +336,12 @@ TEST_CASE("the store's read gives way at each of its bits, whatever the device s
   for (const unsigned sent : {0x00U, 0xFFU, 0xA5U})
     for (unsigned bit = 0; bit < kBits; ++bit) {
       CAPTURE(sent, bit);
-      LineBus bus;
+      SharedBus bus;
       bus.device.registers[0x30] = bus.device.registers[0x31] = static_cast<std::uint8_t>(sent);
-      unsigned bits = 0;
-      std::function<void()> count = [&] {
-        if (bits++ == bit)
-          CHECK_FALSE(bus.ask(0x20, 2));
-        else
-          bus.between = count;
-      };
-      bus.between = count;
+      bus.ask_at(bit);
       std::array<std::byte, 2> got{};
       CHECK(bus.bus.master().transfer_between(kBitDevice, std::array{std::byte{0x30}}, got) ==
             Store::Outcome::taken);
-      bus.run();
-      CHECK(bus.is_at_rest());
-      CHECK(bus.collect(0x20, 2));
-      CHECK(bus.has(0x20, 2));
+      bus.check_the_asked();
     }
 }
