@@ -16,12 +16,18 @@ std::uint32_t times_in_window(const vm::Sensor& sensor, std::uint32_t window_us)
 
 constexpr std::uint32_t kTickUs = 1000;
 
+// How long it may take until the bus is there for sensors.
+std::uint32_t take_us(const vm::Sensor& sensor, const policy::BoardCosts& board) {
+  if (vm::is_on_spi(sensor.driver)) return 0;
+  return board.i2c_take_us;
+}
+
 }  // namespace
 
 std::uint32_t answered_in_us(const vm::Image& image, const policy::BoardCosts& board,
                              const vm::Sensor& sensor) {
   const std::uint32_t window_us = policy::bus_window_us(board.bus_ahead_ms);
-  std::uint32_t us = policy::kBeforeBusUs + kTickUs;
+  std::uint32_t us = policy::kBeforeBusUs + take_us(sensor, board) + kTickUs;
   for (const vm::Sensor& other : image.sensors)
     if (other.bus == sensor.bus && vm::is_on_spi(other.driver) == vm::is_on_spi(sensor.driver))
       us += policy::bus_us(other, board) * times_in_window(other, window_us);
@@ -39,8 +45,9 @@ std::vector<BusLoad> overloaded_buses(const vm::Image& image, const policy::Boar
     auto load = std::ranges::find_if(
         loads, [&](const BusLoad& one) { return one.bus == sensor.bus && one.spi == spi; });
     if (load == loads.end())
-      load =
-          loads.insert(loads.end(), BusLoad{.bus = sensor.bus, .spi = spi, .window_us = window_us});
+      load = loads.insert(
+          loads.end(),
+          BusLoad{.bus = sensor.bus, .spi = spi, .window_us = window_us - take_us(sensor, board)});
     load->us += us;
     load->shares.push_back({s, us});
   }

@@ -32,7 +32,7 @@ class Browser:
         os.close(from_browser)
         self.orders, self.answers = os.fdopen(write, "wb"), os.fdopen(read, "rb")
         self.session = None
-        tab = self.call("Target.createTarget", url="about:blank")["targetId"]  # its own may not be there yet
+        tab = self.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=tab, flatten=True)["sessionId"]
         self.call("Page.enable")
         self.call("Runtime.enable")
