@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMaxFile = std::size_t{16} * 1024 * 1024;
 constexpr std::size_t kReadBlock = std::size_t{64} * 1024;
+constexpr std::size_t kMostEntries = 2000;
 
 [[noreturn]] void fail(const char* what, const fs::path& path, int error) {
   throw Failure(Exit::outside,
@@ -84,6 +85,17 @@ std::vector<std::byte> read_bytes(const fs::path& path) {
   const std::string text = read_text(path);
   const auto bytes = std::as_bytes(std::span(text));
   return {bytes.begin(), bytes.end()};
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, std::string_view extension) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (std::size_t entries = 0;
+       !error && entry != fs::directory_iterator() && entries < kMostEntries;
+       ++entries, entry.increment(error))
+    if (entry->path().extension() == extension) files.push_back(entry->path().lexically_normal());
+  return files;
 }
 
 fs::path cache_folder() {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rsc/failure.hpp"
@@ -14,6 +15,10 @@ namespace robosync::tool {
 // Both throw Failure (outside) when the file cannot be read, or is larger than 16 MiB.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::byte> read_bytes(const std::filesystem::path& path);
+
+// With this extension, in any order. Of a large folder only some thousand entries are looked at.
+[[nodiscard]] std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
+                                                          std::string_view extension);
 
 // This user's cache folder; empty if there is none. It may not exist yet.
 [[nodiscard]] std::filesystem::path cache_folder();

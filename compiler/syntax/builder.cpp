@@ -119,6 +119,11 @@ ast::Box<ast::Expr> Builder::shallow(ast::Box<ast::Expr> made) {
   return expr(made->span, ast::Quantity{});
 }
 
+ast::Box<ast::Expr> Builder::is_between(Span span, ast::IsBetween node, bool negated) {
+  auto made = expr(span, std::move(node));
+  return negated ? expr(span, ast::Not{std::move(made)}) : std::move(made);
+}
+
 ast::Box<ast::Expr> Builder::times_within(Span span, ast::Box<ast::Expr> condition, Span times,
                                           ast::Box<ast::Expr> within) {
   const std::string_view digits = whole_number(times).text;

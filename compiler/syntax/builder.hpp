@@ -56,6 +56,7 @@ public:
     const std::uint16_t depth = levels(node);
     return shallow(ast::Box<ast::Expr>(new ast::Expr{span, std::move(node), depth}));
   }
+  ast::Box<ast::Expr> is_between(Span span, ast::IsBetween node, bool negated);
   ast::Box<ast::Expr> times_within(Span span, ast::Box<ast::Expr> condition, Span times,
                                    ast::Box<ast::Expr> within);
 

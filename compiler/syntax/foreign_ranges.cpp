@@ -25,12 +25,13 @@ public:
   // True if one begins here, behind what it is about.
   [[nodiscard]] bool read() {
     const bool is_written = take(Kinds::IS);
+    negated_ = take(Kinds::NOT);
     const bool between = take(Kinds::BETWEEN);
-    const bool in = !between && (take(Kinds::FROM) || take_word("IN"));
-    if (in) take_word("RANGE");
+    const bool in = !between && take_in();
     if (!between && !in && !is_written && !take(Kinds::WITHIN) && !take(Kinds::EQUAL)) return false;
     const bool open = take(Kinds::OPEN) || is_behind_square();
-    return take_numbers(between && !open, between || in) &&
+    const bool lacks_is_only = !negated_ || is_written;
+    return take_numbers(between && !open && lacks_is_only, between || in) &&
            (!open || take(Kinds::CLOSE) || is_behind_square());
   }
 
@@ -44,15 +45,20 @@ public:
     return all;
   }
 
+  [[nodiscard]] std::string rule() const {
+    return fmt::format("{0}between two numbers is written `IS {1}BETWEEN … AND …`",
+                       negated_ ? "not " : "", negated_ ? "NOT " : "");
+  }
   [[nodiscard]] std::string better() const {
-    return fmt::format("IS BETWEEN {}{} AND {}", text(first_), has_unit(first_) ? "" : unit(last_),
-                       text(last_));
+    return fmt::format("IS {}BETWEEN {}{} AND {}", negated_ ? "NOT " : "", text(first_),
+                       has_unit(first_) ? "" : unit(last_), text(last_));
   }
 
   void add_tokens(Tokens& into) const {
     const Span at = tokens_[begin_].span;
-    for (const Token token : {Token{Kinds::IS, at}, Token{Kinds::BETWEEN, at}})
-      into.push_back(token);
+    into.push_back({Kinds::IS, at});
+    if (negated_) into.push_back({Kinds::NOT, at});
+    into.push_back({Kinds::BETWEEN, at});
     add_number(has_unit(first_) ? first_ : last_, into);  // `2` of `2..5cm` has the unit of `5cm`
     into.push_back({Kinds::AND, at});
     add_number(last_, into);
@@ -75,6 +81,17 @@ private:
   bool take_word(std::string_view word) {
     if (!is(Kinds::NAME) || !ascii::same(source_.text(tokens_[end_].span), word)) return false;
     ++end_;
+    return true;
+  }
+  // `IN RANGE`, `FROM`, `OUTSIDE OF`
+  bool take_in() {
+    if (take_word("OUTSIDE")) {
+      negated_ = !negated_;
+      take(Kinds::OF);
+      return true;
+    }
+    if (!take_word("IN") && !take_word("INSIDE") && !take(Kinds::FROM)) return false;
+    take_word("RANGE");
     return true;
   }
   // The lexer leaves `[` and `]` out.
@@ -135,6 +152,7 @@ private:
   const Tokens& tokens_;
   const SourceFile& source_;
   std::size_t begin_, end_;
+  bool negated_ = false;
   Number first_, last_;
 };
 
@@ -166,7 +184,7 @@ std::vector<Span> mend_foreign_ranges(Tokens& tokens, const SourceFile& source,
       rewritten.keep(at);
       continue;
     }
-    diagnostics.report(Code::E0001, "between two numbers is written `IS BETWEEN … AND …`")
+    diagnostics.report(Code::E0001, range.rule())
         .label(range.place())
         .helps("write `" + range.better() + "`")
         .fix(range.place(), range.better(), Applicability::likely);

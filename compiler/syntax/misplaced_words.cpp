@@ -109,13 +109,8 @@ private:
     return std::nullopt;
   }
 
-  // `touch LEVEL NOT > 4`, `mood BECOMES NOT happy`, `x IS NOT BETWEEN 1 AND 2`
+  // `touch LEVEL NOT > 4`, `mood BECOMES NOT happy`
   std::optional<Edit> negation() {
-    if (is(stop_, Kinds::BETWEEN) && stop_ > 1 && is(stop_ - 1, Kinds::NOT)) {
-      report(Code::E0001, "`NOT` goes before the whole condition here", tokens_[stop_ - 1].span)
-          .helps("write `NOT x IS BETWEEN 2 AND 5`");
-      return change(stop_ - 1, 1);
-    }
     if (!is(stop_, Kinds::NOT) || stop_ == begin_) return std::nullopt;
     if (is(stop_ - 1, Kinds::BECOMES)) {
       const Span both = span(stop_ - 1, stop_ + 1);

@@ -9,6 +9,7 @@
 
 #include "compiler/source/sorting.hpp"
 #include "rsc/lsp/meant.hpp"
+#include "rsc/lsp/scenarios.hpp"
 
 namespace robosync::tool::lsp {
 
@@ -125,6 +126,20 @@ void add_edits(Edits& edits, const Meant& meant, const std::string& name) {
   }
 }
 
+// In the scenarios of the robot to which the sensor or the channel belongs.
+void add_edits(Edits& edits, const Scenarios& scenarios, const Meant& meant,
+               const std::string& name) {
+  const query::Symbol& symbol = *meant.symbol;
+  std::vector<Span> places;
+  if (symbol.kind == query::SymbolKind::sensor) places = scenarios.sensor(symbol.name);
+  if (symbol.kind == query::SymbolKind::channel) {
+    const auto& sensors = meant.asked.checked->project().robot.sensors;
+    places = scenarios.channel(sensors.at(symbol.owner).name.text, symbol.name);
+  }
+  for (const Span place : places)
+    edits.push_back({&scenarios.sources(), place, name});
+}
+
 // The texts with the edits, by the names of their files.
 std::map<std::string, std::string> edited_texts(const Edits& edits) {
   std::map<std::string, std::string> texts;
@@ -170,6 +185,9 @@ Json rename(Desk desk, const Json& params) {
     if (!why.empty()) throw Refusal(why);
     add_edits(edits, meant, name);
   }
+  const std::string& robot = sources_of(all.front().asked).file(kConfigurationFile).name();
+  const Scenarios scenarios(desk.workspace, robot);
+  add_edits(edits, scenarios, all.front(), name);
   edits = in_order(std::move(edits));
   refuse_other_meaning(desk, all, edits);
   Json result = Json::object();

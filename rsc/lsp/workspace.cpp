@@ -1,7 +1,7 @@
 #include "rsc/lsp/workspace.hpp"
 
 #include <algorithm>
-#include <system_error>
+#include <string_view>
 #include <utility>
 
 #include "compiler/project.hpp"
@@ -18,11 +18,10 @@ namespace {
 
 using compiler::FileId, compiler::SourceFile;
 
-// The most entries of a folder that are looked at for a lone robot.json.
-constexpr std::size_t kMostEntries = 2000;
+constexpr std::string_view kProgram = ".rsl";
 
 bool is_program(const fs::path& path) {
-  return path.extension() == ".rsl";
+  return path.extension() == kProgram;
 }
 
 std::optional<fs::path> configuration_of(const fs::path& program, const Texts& texts) {
@@ -158,16 +157,10 @@ const Document* Workspace::find(const fs::path& path) const {
 // ---- programs
 
 std::set<std::string> Workspace::users_of_configuration(const fs::path& path) const {
-  std::error_code error;
   std::set<std::string> users;
-  fs::directory_iterator entry(path.parent_path(), error);
-  for (std::size_t entries = 0; !error && entry != fs::directory_iterator() &&
-                                entries < kMostEntries && users.size() < kMostPrograms;
-       ++entries, entry.increment(error)) {
-    const fs::path program = entry->path().lexically_normal();
-    if (is_program(program) && configuration_of(program, *this) == path)
+  for (const fs::path& program : files_in(path.parent_path(), kProgram))
+    if (users.size() < kMostPrograms && configuration_of(program, *this) == path)
       users.insert(program.string());
-  }
   for (const auto& [name, document] : documents_)
     if (is_program(name) && configuration_of(name, *this) == path) users.insert(name);
   if (users.empty() && path.filename() == "robot.json") users.insert(path.string());

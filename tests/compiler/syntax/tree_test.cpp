@@ -54,6 +54,7 @@ TEST_CASE("how tightly operators bind", "[tree]") {
   CHECK(condition("(a OR b) AND c") == "(and (or a b) c)");
   CHECK(condition("-a * -3mm <> --b") == "(<> (* (neg a) (neg 3mm)) (neg (neg b)))");
   CHECK(condition("a IS BETWEEN 1 AND 2 AND b") == "(and (between a 1 2) b)");
+  CHECK(condition("a IS NOT BETWEEN 1 AND 2 OR b") == "(or (not (between a 1 2)) b)");
   CHECK(condition("RANDOM(1, 6) >= 5") == "(>= (random 1 6) 5)");
   CHECK(condition("ABS(a - 1) > Min(min, 2cm) * abs") ==
         "(> (function ABS (- a 1)) (* (function Min min 2cm) abs))");

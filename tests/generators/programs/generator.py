@@ -212,7 +212,7 @@ class Generator:
                          "noise IS loud", "mood IS NOT calm_down")
 
     def _variable(self):
-        return self._one("joy > calm", "fear >= 30%", "count MOD 3 = 0", "last IS BETWEEN 1 AND 4",
+        return self._one("joy > calm", "fear >= 30%", "count MOD 3 = 0", "last IS NOT BETWEEN 2 AND 3",
                          "count + last > touch LEVEL",
                          f"{self._number(2)} {self._random.choice(RELATIONS)} {self._number(1)}")
 

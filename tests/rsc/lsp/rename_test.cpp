@@ -220,6 +220,57 @@ TEST_CASE("a sensor and its channel are changed where one word says both") {
   CHECK_THAT(after.at("other.rsl"), Contains("touch_Warmth > 3"));
 }
 
+TEST_CASE("a sensor and its channel are changed in scenarios and in their recordings") {
+  const std::string scenario = R"({"duration": "9s", "stimuli": [
+  {"at": "1s", "sensor": "touch", "channel": "LEVEL", "value": 3},
+  {"at": "2s", "sensor": "TOUCH", "channel": "HEAT", "value": 3},
+  {"at": "2s", "sensor": "touch.level", "value": 3},
+  {"csv": "both.csv"}, {"csv": "both.csv", "at": "3s"}, {"csv": "one.csv", "sensor": "touch"},
+  {"csv": "missing.csv"}, {"csv": "touch", "sensor": 7}, {"sensor": "\\u0074ouch", "value": "touch"}, "touch"]}
+)";
+  const std::string both = "touch.HEAT,time (s);\"touch.LEVEL (%)\"\r\n1,2,touch\r\n";
+  const std::string one = "time (s)\tLEVEL\t touch \n";
+  Both editor;
+  save(editor, "play.json", scenario);
+  save(editor, "both.csv", "\xEF\xBB\xBF" + both);  // which editors do not count
+  save(editor, "one.csv", one);
+  save(editor, "broken.json", "{\"stimuli\": [{\"sensor\": \"touch\"");
+  const auto after = [&](const Json& answer, const std::string& name, const std::string& text) {
+    const Json& changes = answer.at("changes");
+    return changes.contains(editor.uri(name)) ? edited(text, changes.at(editor.uri(name))) : text;
+  };
+  const Json hand = editor.renamed("robot.rsl", kHug, "touch", 1, "hand");
+  std::string wanted = replaced(scenario, "\"touch\", \"ch", "\"hand\", \"ch");
+  wanted = replaced(replaced(wanted, "TOUCH", "hand"), "touch.level", "hand.level");
+  CHECK(after(hand, "play.json", scenario) ==
+        replaced(wanted, R"("one.csv", "sensor": "touch")", R"("one.csv", "sensor": "hand")"));
+  CHECK(after(hand, "both.csv", both) == replaced(both, "touch.", "hand."));
+  CHECK(after(hand, "one.csv", one) == one);
+  CHECK_FALSE(hand.at("changes").contains(editor.uri("broken.json")));
+  const Json force = editor.renamed("robot.rsl", kHug, "LEVEL", 1, "FORCE");
+  CHECK(after(force, "play.json", scenario) ==
+        replaced(replaced(scenario, "LEVEL", "FORCE"), "touch.level", "touch.FORCE"));
+  CHECK(after(force, "both.csv", both) == replaced(both, "LEVEL", "FORCE"));
+  CHECK(after(force, "one.csv", one) == replaced(one, "LEVEL", "FORCE"));
+  editor.open_robot();
+  const Json arm = editor.renamed("robot.json", kReferringRobot, "left_arm", 1, "touched");
+  CHECK_FALSE(arm.at("changes").contains(editor.uri("play.json")));
+}
+
+TEST_CASE("scenarios in a folder with two robots are not changed") {
+  Both editor;
+  save(editor, "play.json",
+       R"({"stimuli": [{"at": "1s", "sensor": "touch", "channel": "LEVEL", "value": 3}]})");
+  const auto is_changed = [&] {
+    return editor.renamed("robot.rsl", kHug, "touch", 1, "hand")
+        .at("changes")
+        .contains(editor.uri("play.json"));
+  };
+  CHECK(is_changed());
+  save(editor, "another.json", R"({"sensors": []})");
+  CHECK_FALSE(is_changed());
+}
+
 TEST_CASE("a name is shown without its quotes before it is changed") {
   Both editor;
   editor.open_robot();
