@@ -8,7 +8,7 @@ function(embed folder suffix header type function out)
     OUTPUT ${out}
     COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DFOLDER=${folder} -DSUFFIX=${suffix} -DHEADER=${header}
             -DTYPE=${type} -DFUNCTION=${function} -P ${script}
-    DEPENDS ${files} ${script}
+    DEPENDS ${files} ${script} ${PROJECT_SOURCE_DIR}/cmake/pack.cmake
     COMMENT "Embedding ${folder}/*.${suffix}"
     VERBATIM)
   set_source_files_properties(${out} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -95,13 +95,22 @@ foreach(kind quantity range whole)
   string(APPEND lines "$${kind}|${words}\n")
 endforeach()
 
+include(${CMAKE_CURRENT_LIST_DIR}/../cmake/pack.cmake)
+embed(piece "${lines}")
+pack(packed)
 file(WRITE ${OUT} "// Made from ${SCHEMA} by compiler/embed_keys.cmake.
 #include \"compiler/query/configuration.hpp\"
+#include \"compiler/source/embedded.hpp\"
 
 namespace robosync::compiler::query {
 
+namespace {
+
+${packed}
+}  // namespace
+
 std::string_view key_texts() {
-  return R\"text(${lines})text\";
+  return all_texts();
 }
 
 }  // namespace robosync::compiler::query

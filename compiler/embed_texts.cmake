@@ -2,6 +2,7 @@
 #   cmake -DOUT=FILE -DFOLDER=FOLDER -DSUFFIX=rsl|json -DHEADER=… -DTYPE=… -DFUNCTION=… -P embed_texts.cmake
 # HEADER declares the struct TYPE {name, text} and FUNCTION, which returns all rows. The row of a device also has the
 # fields it is looked up by: {name, text, is it a sensor?, its type, is it the default of its type?}.
+include(${CMAKE_CURRENT_LIST_DIR}/../cmake/pack.cmake)
 file(GLOB files ${FOLDER}/*.${SUFFIX})
 list(SORT files)
 set(rows "")
@@ -29,20 +30,23 @@ foreach(file ${files})
     endif()
     set(found_by ", ${is_sensor}, \"${type}\", ${is_default}")
   endif()
-  string(APPEND rows "    {\"${name}\", R\"text(${text})text\"${found_by}},\n")
+  embed(piece "${text}")
+  string(APPEND rows "      {\"${name}\", EmbeddedText${piece}.text()${found_by}},\n")
 endforeach()
+pack(packed)
 file(WRITE ${OUT} "// Made from ${FOLDER}/*.${SUFFIX} by compiler/embed_texts.cmake.
 #include \"${HEADER}\"
+#include \"compiler/source/embedded.hpp\"
 
 namespace robosync::compiler {
 namespace {
 
-constexpr ${TYPE} kTexts[] = {
-${rows}};
-
+${packed}
 }  // namespace
 
 std::span<const ${TYPE}> ${FUNCTION}() {
+  static const ${TYPE} kTexts[] = {
+${rows}  };
   return kTexts;
 }
 

@@ -27,7 +27,7 @@ set(schema ${PROJECT_SOURCE_DIR}/grammar/robot.schema.json)
 add_custom_command(
   OUTPUT ${key_texts}
   COMMAND ${CMAKE_COMMAND} -DOUT=${key_texts} -DSCHEMA=${schema} -P ${CMAKE_CURRENT_LIST_DIR}/embed_keys.cmake
-  DEPENDS ${schema} ${CMAKE_CURRENT_LIST_DIR}/embed_keys.cmake
+  DEPENDS ${schema} ${CMAKE_CURRENT_LIST_DIR}/embed_keys.cmake ${PROJECT_SOURCE_DIR}/cmake/pack.cmake
   COMMENT "Embedding what the schema says of the keys of robot.json"
   VERBATIM)
 set_source_files_properties(${key_texts} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -1,5 +1,6 @@
 # The front end: text to tree, and the diagnostics of the whole compiler.
 find_package(nlohmann_json 3.11 REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(BISON 3.8 REQUIRED)
 find_program(RE2C re2c REQUIRED)
 
@@ -53,10 +54,11 @@ target_sources(robosync_compiler PRIVATE
   syntax/reader.cpp)
 # Public for the tests, which look at tokens. SYSTEM silences warnings inside the generated header.
 target_include_directories(robosync_compiler SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
-target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)
+target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json ZLIB::ZLIB)
 # The code that words a mistake is long, runs seldom, and prints at most 20 messages.
 target_sources(robosync_compiler_small PRIVATE
   source/character_names.cpp
+  source/embedded.cpp
   source/json.cpp
   diagnostics/diagnostic.cpp
   diagnostics/render_human.cpp

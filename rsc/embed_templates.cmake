@@ -2,7 +2,7 @@
 #   cmake -DOUT=FILE -DTEMPLATES=templates.txt -DEXAMPLES=FOLDER -P embed_templates.cmake
 # The path of the schema is removed: it is only valid in the repository.
 file(STRINGS ${TEMPLATES} lines REGEX "^[a-z]")
-include(${CMAKE_CURRENT_LIST_DIR}/pack.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../cmake/pack.cmake)
 set(files_of "")
 set(rows "")
 foreach(line ${lines})

@@ -4,13 +4,13 @@
 #include <span>
 #include <string_view>
 
-#include "rsc/embedded.hpp"
+#include "compiler/source/embedded.hpp"
 
 namespace robosync::tool {
 
 struct TemplateFile {
   std::string_view name;
-  EmbeddedText content;
+  compiler::EmbeddedText content;
 
   [[nodiscard]] std::string_view text() const { return content.text(); }
 };

@@ -1,7 +1,7 @@
 # Writes the texts of texts.hpp into one C++ file:
 #   cmake -DOUT=FILE -DSOURCE=TOP_OF_THE_REPOSITORY -P embed_texts.cmake
 # The module itself is the one that docs/algorithms.md shows.
-include(${CMAKE_CURRENT_LIST_DIR}/../pack.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/pack.cmake)
 macro(add_file file_name)
   string(APPEND rows "    {\"${file_name}\", ${piece}},\n")
 endmacro()
@@ -33,7 +33,7 @@ namespace {
 ${packed}
 constexpr TemplateFile kFiles[] = {
 ${rows}};
-constexpr EmbeddedText kCounting = ${counting_piece};
+constexpr compiler::EmbeddedText kCounting = ${counting_piece};
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 # Writes the parts of the page, without the script's lines of comment, into one C++ file:
 #   cmake -DOUT=FILE -DFOLDER=rsc/timeline -P embed_page.cmake
-include(${CMAKE_CURRENT_LIST_DIR}/../pack.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/pack.cmake)
 file(READ ${FOLDER}/timeline.html html)
 file(READ ${FOLDER}/timeline.css style)
 file(READ ${FOLDER}/timeline.js script)

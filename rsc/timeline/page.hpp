@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "rsc/embedded.hpp"
+#include "compiler/source/embedded.hpp"
 #include "rsc/json.hpp"
 
 namespace robosync::tool {
 
 // The parts of the page, from this folder.
 struct PageParts {
-  EmbeddedText html, style, script;
+  compiler::EmbeddedText html, style, script;
 };
 [[nodiscard]] PageParts page_parts();
 

@@ -1,5 +1,5 @@
 // The texts that the tool carries are those of the repository, and a damaged one is noticed.
-#include "rsc/embedded.hpp"
+#include "compiler/source/embedded.hpp"
 
 #include <sstream>
 #include <vector>
@@ -63,14 +63,14 @@ TEST_CASE("what the tool carries is what stands in the repository") {
 
 TEST_CASE("a packed text is unpacked, and one that is damaged, or has another size, is noticed") {
   constexpr std::size_t kSize = 8;
-  CHECK(tool::unpacked(kPacked, kSize) == "robosync");
-  CHECK_THROWS(tool::unpacked(kPacked, kSize - 1));
-  CHECK_THROWS(tool::unpacked(kPacked, kSize + 1));
-  CHECK_THROWS(tool::unpacked(std::span(kPacked).first(std::size(kPacked) - 1), kSize));
+  CHECK(compiler::unpacked(kPacked, kSize) == "robosync");
+  CHECK_THROWS(compiler::unpacked(kPacked, kSize - 1));
+  CHECK_THROWS(compiler::unpacked(kPacked, kSize + 1));
+  CHECK_THROWS(compiler::unpacked(std::span(kPacked).first(std::size(kPacked) - 1), kSize));
   // The text, its checksum, its size; some bits behind the text mean nothing.
   for (const std::size_t at : {10, 12, 14, 20, 24}) {
     std::vector<unsigned char> damaged(std::begin(kPacked), std::end(kPacked));
     damaged[at] ^= 4U;
-    CHECK_THROWS(tool::unpacked(damaged, kSize));
+    CHECK_THROWS(compiler::unpacked(damaged, kSize));
   }
 }

@@ -1,4 +1,4 @@
-// Texts that the tool carries so that it needs no other files. pack.cmake packs those of each list together.
+// Texts that the compiler and the tool carry so that they need no other files. cmake/pack.cmake packs those of each list together.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace robosync::tool {
+namespace robosync::compiler {
 
 // What gzip has packed; `size`: how long it was before.
 [[nodiscard]] std::string unpacked(std::span<const unsigned char> packed, std::size_t size);
@@ -19,4 +19,4 @@ struct EmbeddedText {
   [[nodiscard]] std::string_view text() const { return std::string_view(list()).substr(at, size); }
 };
 
-}  // namespace robosync::tool
+}  // namespace robosync::compiler

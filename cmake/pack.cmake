@@ -1,5 +1,5 @@
-# For the scripts that embed texts in the tool. They are packed, as plain text would take three times the room.
-#   embed(PIECE TEXT)   adds TEXT, and sets PIECE to the EmbeddedText (embedded.hpp) that stands for it
+# For the scripts that embed texts in the compiler and in the tool. They are packed, as plain text would take three times the room.
+#   embed(PIECE TEXT)   adds TEXT, and sets PIECE to the EmbeddedText (compiler/source/embedded.hpp) that stands for it
 #   pack(CODE)          sets CODE to the definition of all_texts(), to which these pieces refer
 set(texts "")
 function(embed piece text)
@@ -18,7 +18,7 @@ function(pack code)
   set(${code} "constexpr unsigned char kPacked[] = {${bytes}};
 
 const std::string& all_texts() {
-  static const std::string texts = unpacked(kPacked, ${size});
+  static const std::string texts = compiler::unpacked(kPacked, ${size});
   return texts;
 }
 " PARENT_SCOPE)

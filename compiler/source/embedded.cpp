@@ -1,11 +1,11 @@
 // See embedded.hpp.
-#include "rsc/embedded.hpp"
+#include "compiler/source/embedded.hpp"
 
 #include <stdexcept>
 
 #include <zlib.h>
 
-namespace robosync::tool {
+namespace robosync::compiler {
 
 std::string unpacked(std::span<const unsigned char> packed, std::size_t size) {
   constexpr int kGzip = 16 + MAX_WBITS;
@@ -23,4 +23,4 @@ std::string unpacked(std::span<const unsigned char> packed, std::size_t size) {
   return text;
 }
 
-}  // namespace robosync::tool
+}  // namespace robosync::compiler
