@@ -65,6 +65,7 @@ target_sources(robosync_compiler_small PRIVATE
   diagnostics/render_json.cpp
   diagnostics/sarif.cpp
   diagnostics/snippet.cpp
+  syntax/articles.cpp
   syntax/breaks.cpp
   syntax/condition_behind.cpp
   syntax/edit.cpp
@@ -83,11 +84,13 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/lost_heads.cpp
   syntax/misplaced_words.cpp
   syntax/missing.cpp
+  syntax/number_words.cpp
   syntax/one_line_blocks.cpp
   syntax/parser.cpp
   syntax/pasted.cpp
   syntax/repair.cpp
   syntax/robot_lines.cpp
+  syntax/spoken_words.cpp
   syntax/torn_names.cpp
   syntax/unit_apart.cpp
   syntax/wording.cpp

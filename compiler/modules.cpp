@@ -71,9 +71,14 @@ private:
     const std::string name(use.module.text);
     auto input = read_ ? read_(sources_.file(user).name(), name) : std::nullopt;
     if (input || use.is_guess) return input;
-    diagnostics_.report(Code::E0410, "the module \"" + name + "\" cannot be read")
-        .label(use.module.span)
-        .helps("its path is relative to this file");
+    Diagnostic& d = diagnostics_.report(Code::E0410, "the module \"" + name + "\" cannot be read")
+                        .label(use.module.span);
+    const auto is_meant = [&](const ModuleText& one) { return same_name(one.name, name); };
+    if (std::ranges::any_of(module_texts(), is_meant))
+      d.helps("a module of the library has no quotes: `USE " + name + "`")
+          .fix(use.module.span, name, Applicability::likely);
+    else
+      d.helps("its path is relative to this file");
     return std::nullopt;
   }
 

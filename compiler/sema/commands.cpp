@@ -382,8 +382,15 @@ std::string verb_by(const ActuatorConfig& actuator, vm::Dimension dimension) {
   return verb == actuator.verbs.end() ? std::string() : "`" + verb->name + "`";
 }
 
-void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Unit& unit,
-                      const Typed& number, Diagnostics& diagnostics) {
+// `SHOW face happy 2s`
+bool is_time_alone(const VerbConfig* verb, vm::Param param, const Typed& number) {
+  return param == vm::Param::to && !number.digits.empty() &&
+         number.dimension() == vm::Dimension::duration && verb != nullptr &&
+         verb->has(vm::Param::for_);
+}
+
+void report_dimension(const ActuatorConfig& actuator, vm::Param param, const VerbConfig* verb,
+                      const Unit& unit, const Typed& number, Diagnostics& diagnostics) {
   Diagnostic& d = diagnostics
                       .report(Code::E0301,
                               "`" + spelling(param) + "` of " + actuator.name.shown() + " is " +
@@ -391,6 +398,12 @@ void report_dimension(const ActuatorConfig& actuator, vm::Param param, const Uni
                                   std::string(dimension_phrase(number.dimension())))
                       .label(number.digits.empty() ? number.span : number.unit_span)
                       .label(actuator.name.span, "the actuator", false);
+  if (is_time_alone(verb, param, number)) {
+    d.helps("how long it lasts is said with `FOR`")
+        .fix({number.span.file, number.span.begin, number.span.begin}, "FOR ",
+             Applicability::likely);
+    return;
+  }
   const std::string verbs = param == vm::Param::by ? verb_by(actuator, number.dimension()) : "";
   if (!verbs.empty())
     d.helps(verbs + " takes " + std::string(dimension_phrase(number.dimension())));
@@ -410,7 +423,7 @@ bool fit_parameter(const ActuatorConfig& actuator, vm::Param param, Typed& numbe
     take_unit(number, {&unit, source, actuator.name.span, param == vm::Param::by}, notes);
   if (!number.is_number()) return false;
   if (number.dimension() != unit.dimension) {
-    report_dimension(actuator, param, unit, number, diagnostics);
+    report_dimension(actuator, param, verb, unit, number, diagnostics);
     return false;
   }
   return !number.is_constant() || check_value(actuator, param, number, diagnostics);
@@ -620,7 +633,9 @@ void Commands::report_not_taken(const Recipient& to, const Given& given) {
             (given.number.digits.empty() ? "3" : given.number.digits) +
             " TIMES`, the command and `END`, each on its own line");
   else
-    d.helps(taken_by(to.verb));
+    d.helps(given.param == vm::Param::for_ && to.verb.has(vm::Param::over)
+                ? "how long it takes is said with `OVER`"
+                : taken_by(to.verb));
 }
 
 bool Commands::add_number(const Recipient& to, const Given& given, vm::Param param,

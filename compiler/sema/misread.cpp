@@ -253,14 +253,14 @@ bool Commands::is_unit_apart(const ast::Command& command, std::size_t place) {
   const bool bare = number != nullptr && number->unit.empty();
   const Unit* const unit = find_unit(word->name.text);
   if (!bare || unit == nullptr || is_known_word(word->name.text)) return false;
-  const Span gap{next.span.file, command.arguments[place].span.end, next.span.begin};
+  const Span all{next.span.file, amount->value->span.begin, next.span.end};
   const std::string better = std::string(number->digits) + std::string(unit->spelling);
   const bool relative = command.arguments[place].preposition == ast::Preposition::none &&
                         can_go_to(command.verb.text);
   Diagnostic& d = diagnostics_.report(Code::E0505, "a unit follows its number without a space");
-  d.label(both(command.arguments[place], next))
+  d.label(all)
       .helps("write `" + better + "`")
-      .fix(gap, "", relative ? Applicability::likely : Applicability::certain);
+      .fix(all, better, relative ? Applicability::likely : Applicability::certain);
   if (relative)
     d.helps("alone, it is how far from where it is now (`BY`); for a position, write `TO " +
             better + "`");

@@ -391,6 +391,14 @@ std::string Statements::declaration_of(const ast::Name& name, const ast::Expr* v
   return "STATE " + std::string(name.text) + ": " + *word + ", …";
 }
 
+std::string Statements::how_to_change(const ast::Name& name) const {
+  const auto target = names_.find_target(name.text);
+  if (!target || target->actuators.empty()) return "only a REMEMBER, STATE or FEELING can be set";
+  const ActuatorConfig& actuator = robot_.actuators[target->actuators.front()];
+  return "an actuator takes commands: " + name.shown() + " knows " +
+         list_names(verb_names(actuator));
+}
+
 // The variable that a statement may set; with `number`, one that it may calculate with.
 VariableName* Statements::settable(const ast::Name& name, bool number, const ast::Expr* value) {
   if (name.text.empty()) return nullptr;
@@ -406,7 +414,7 @@ VariableName* Statements::settable(const ast::Name& name, bool number, const ast
     if (!kind.empty()) {
       diagnostics_.report(Code::E0508, name.shown() + " is " + kind + ", which cannot be set")
           .label(name.span)
-          .helps("only a REMEMBER, STATE or FEELING can be set");
+          .helps(how_to_change(name));
       return nullptr;
     }
     Diagnostic& d = diagnostics_.report(Code::E0501, no_variable(name)).label(name.span);

@@ -76,6 +76,7 @@ private:
   void add(const ast::Raise& node, Span span, ir::Block& result);
   void add(const ast::Signal& node, Span span, ir::Block& result);
   VariableName* settable(const ast::Name& name, bool number, const ast::Expr* value = nullptr);
+  std::string how_to_change(const ast::Name& name) const;
   std::string declaration_of(const ast::Name& name, const ast::Expr* value);
   void set_label(const ast::Set& node, const VariableName& variable, Span span, ir::Block& result);
   [[nodiscard]] bool is_restart(const ast::Command& node) const;

@@ -1,4 +1,5 @@
 // Part of Commands: words in a verb's place that are not verbs of the robot.
+#include <algorithm>
 #include <string_view>
 
 #include "compiler/config/devices.hpp"
@@ -21,6 +22,14 @@ constexpr ForeignVerb kForeignVerbs[] = {
     {"SLEEP", "WAIT", "WAIT makes a pause"},
     {"DELAY", "WAIT", "WAIT makes a pause"},
     {"PAUSE", "WAIT", "WAIT makes a pause"},
+    {"HOLD", "WAIT", "WAIT makes a pause"},
+    {"STAY", "WAIT", "WAIT makes a pause"},
+    {"LIFT", "MOVE", "MOVE moves a joint: `MOVE arm TO 90deg`"},
+    {"ROTATE", "TURN", "TURN turns a joint, wheels or the robot: `TURN head TO 20deg`"},
+    {"SPEAK", "SAY", "SAY says a text: `SAY \"Hello\"`"},
+    {"TALK", "SAY", "SAY says a text: `SAY \"Hello\"`"},
+    {"TELL", "SAY", "SAY says a text: `SAY \"Hello\"`"},
+    {"DISPLAY", "SHOW", "SHOW shows a picture: `SHOW face happy`"},
     {"FADE", "", "OVER makes a change slow: `LIGHT lamp red OVER 1s`"},
     {"FLASH", "BLINK", "BLINK turns a light on and off"},
     {"ADD", "", "RAISE increases a variable: `RAISE visits BY 1`"},
@@ -47,8 +56,10 @@ std::vector<std::string> keywords_of_lines() {
 }  // namespace
 
 void doubt_keyword(Diagnostic& diagnostic) {
-  for (Fix& fix : diagnostic.fixes)
-    if (is_keyword(fix.replacement)) fix.applicability = Applicability::likely;
+  for (Fix& fix : diagnostic.fixes) {
+    const auto is_meant = [&](const Keyword& one) { return one.spelling == fix.replacement; };
+    if (std::ranges::any_of(keywords(), is_meant)) fix.applicability = Applicability::likely;
+  }
 }
 
 void suggest_perform(Diagnostic& diagnostic, const ast::Name& motion) {
@@ -111,7 +122,8 @@ bool Commands::is_foreign(const ast::Command& command) {
     return true;
   }
   for (const ForeignVerb& foreign : kForeignVerbs) {
-    if (!same_name(foreign.spelling, command.verb.text)) continue;
+    const bool may_be_define = command.arguments.empty() && !foreign.meant.empty();
+    if (may_be_define || !same_name(foreign.spelling, command.verb.text)) continue;
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no verb " + command.verb.shown())
                         .label(command.verb.span)
                         .helps(std::string(foreign.help));
@@ -145,8 +157,11 @@ void Commands::report_run_define(const ast::Command& command, Diagnostic& diagno
 }
 
 void Commands::report_unknown_verb(const ast::Command& command) {
-  if (begins_with_actuator(command) || calls_define(command) || is_foreign(command)) return;
   const ast::Name& verb = command.verb;
+  const bool is_ours =
+      names_.find_motion(verb.text) != nullptr || names_.find_define(verb.text) != nullptr;
+  if (begins_with_actuator(command) || calls_define(command) || (!is_ours && is_foreign(command)))
+    return;
   const std::string what = command.arguments.empty() ? "DEFINE or verb " : "verb ";
   Diagnostic& d =
       diagnostics_.report(Code::E0501, "there is no " + what + verb.shown()).label(verb.span);
@@ -166,6 +181,7 @@ void Commands::report_unknown_verb(const ast::Command& command) {
   candidates.insert(candidates.end(), keywords.begin(), keywords.end());
   for (const std::string_view word : {kPerform, kFollow, kRestart})
     candidates.emplace_back(word);
+  std::erase_if(candidates, [&](const auto& one) { return same_name(one, verb.text); });
   if (did_you_mean(d, verb.span, verb.text, candidates)) return doubt_keyword(d);
   // The verb may belong to a device that this robot lacks: usually `USE` brought in a file that needs it.
   const auto devices = devices_with(verb.text);

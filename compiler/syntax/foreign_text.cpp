@@ -23,6 +23,7 @@
 #include "compiler/syntax/lexer_state.hpp"
 #include "compiler/syntax/one_line_blocks.hpp"
 #include "compiler/syntax/pasted.hpp"
+#include "compiler/syntax/spoken_words.hpp"
 #include "compiler/syntax/word_list.hpp"
 
 namespace robosync::compiler {
@@ -427,6 +428,7 @@ Tokens lex_but_foreign_text(const SourceFile& source, FileId file, const Vocabul
   }
   for (const auto& more : {leave_out_pasted(tokens, source, diagnostics),
                            mend_foreign_ranges(tokens, source, diagnostics),
+                           mend_spoken_words(tokens, source, robot, diagnostics),
                            mend_one_line_blocks(tokens, source, said, diagnostics)})
     places.insert(places.end(), more.begin(), more.end());
   for (const Diagnostic& diagnostic : said.all()) {

@@ -33,21 +33,35 @@ public:
     if (auto edit = safety_without_when()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
-    for (const Habit habit :
-         {&MisplacedWords::negated_comparison,  &MisplacedWords::negation,
-          &MisplacedWords::end_before_else,     &MisplacedWords::rule_in_rule,
-          &MisplacedWords::step_in_response,    &MisplacedWords::do_without_when,
-          &MisplacedWords::lonely_else,         &MisplacedWords::then_in_line,
-          &MisplacedWords::commands_with_and,   &MisplacedWords::commands_with_comma,
-          &MisplacedWords::second_statement,    &MisplacedWords::second_stopped,
-          &MisplacedWords::goes_on_above,       &MisplacedWords::times_of_name,
-          &MisplacedWords::counted_text,        &MisplacedWords::set_of_channel,
-          &MisplacedWords::rate_apart,          &MisplacedWords::foreign_rate,
-          &MisplacedWords::command_in_behavior, &MisplacedWords::within,
-          &MisplacedWords::columns_of_motion,   &MisplacedWords::word_with_sign,
-          &MisplacedWords::changed_wrongly,     &MisplacedWords::repeat_how_often,
-          &MisplacedWords::resume_after,        &MisplacedWords::modifier_behind_do,
-          &MisplacedWords::otherwise,           &MisplacedWords::more_than})
+    for (const Habit habit : {&MisplacedWords::negated_comparison,
+                              &MisplacedWords::negation,
+                              &MisplacedWords::end_before_else,
+                              &MisplacedWords::rule_in_rule,
+                              &MisplacedWords::step_in_response,
+                              &MisplacedWords::do_without_when,
+                              &MisplacedWords::lonely_else,
+                              &MisplacedWords::then_in_line,
+                              &MisplacedWords::commands_with_and,
+                              &MisplacedWords::commands_with_comma,
+                              &MisplacedWords::second_statement,
+                              &MisplacedWords::second_stopped,
+                              &MisplacedWords::goes_on_above,
+                              &MisplacedWords::times_of_name,
+                              &MisplacedWords::counted_text,
+                              &MisplacedWords::set_of_channel,
+                              &MisplacedWords::rate_apart,
+                              &MisplacedWords::foreign_rate,
+                              &MisplacedWords::command_in_behavior,
+                              &MisplacedWords::within,
+                              &MisplacedWords::columns_of_motion,
+                              &MisplacedWords::word_with_sign,
+                              &MisplacedWords::changed_wrongly,
+                              &MisplacedWords::pick_without_option,
+                              &MisplacedWords::repeat_how_often,
+                              &MisplacedWords::resume_after,
+                              &MisplacedWords::modifier_behind_do,
+                              &MisplacedWords::otherwise,
+                              &MisplacedWords::more_than})
       if (auto edit = (this->*habit)()) return edit;
     return std::nullopt;
   }
@@ -582,6 +596,19 @@ private:
            span(statement_, stop_))
         .helps("write `" + word + " " + name + " BY 1`");
     return change(stop_, 0, {missing(Kinds::BY, stop_), missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // `PICK ONE`, and then commands
+  std::optional<Edit> pick_without_option() {
+    if (!begins_with(Kinds::PICK) || stop_ != statement_ + 2 || !is(stop_ - 1, Kinds::ONE) ||
+        !is(stop_, Kinds::NEWLINE))
+      return std::nullopt;
+    const std::size_t first = after_line_ends(stop_);
+    if (first == tokens_.size() || is_one_of(tokens_[first].kind, {Kinds::OPTION, Kinds::END}))
+      return std::nullopt;
+    report(Code::E0008, "`PICK ONE` takes an `OPTION` for each choice", span(statement_, stop_))
+        .helps("write `OPTION` on a line of its own before the commands of each choice");
+    return change(first, 0, {missing(Kinds::OPTION, first), missing(Kinds::NEWLINE, first)});
   }
 
   // `REPEAT`

@@ -40,7 +40,7 @@ public:
   [[nodiscard]] bool read() {
     then_ = line_.begin + 1;
     // `WHEN a THEN b WITHIN 5s` asks for one after the other.
-    const bool may_say_then = is(line_.begin, Kinds::IF);
+    const bool may_say_then = is(line_.begin, Kinds::IF) || !says_within();
     while (then_ < line_.end && !is(then_, Kinds::DO) && !(may_say_then && is(then_, Kinds::THEN)))
       ++then_;
     if (then_ == line_.end) then_ = comma();
@@ -55,6 +55,13 @@ public:
     const std::size_t behind = is(other + 1, Kinds::DO) ? other + 2 : other + 1;  // `else {`
     if (other < body.end && !read_statements({behind, body.end}, else_)) return false;
     return has_several_habits();
+  }
+
+  [[nodiscard]] bool says_within() const {
+    std::size_t at = line_.begin;
+    while (at < line_.end && !is(at, Kinds::WITHIN))
+      ++at;
+    return at < line_.end;
   }
 
   void report(Diagnostics& diagnostics) const {

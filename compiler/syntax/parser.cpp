@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compiler/diagnostics/plain_text.hpp"
+#include "compiler/syntax/articles.hpp"
 #include "compiler/syntax/builder.hpp"
 #include "compiler/syntax/examples.hpp"
 #include "compiler/syntax/foreign_text.hpp"
@@ -18,6 +19,7 @@
 #include "compiler/syntax/layout.hpp"
 #include "compiler/syntax/lexer.hpp"
 #include "compiler/syntax/line_starts.hpp"
+#include "compiler/syntax/number_words.hpp"
 #include "compiler/syntax/reader.hpp"
 #include "compiler/syntax/repair.hpp"
 #include "compiler/syntax/torn_names.hpp"
@@ -127,6 +129,8 @@ public:
     }
     if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
     tokens_ = lex_but_foreign_text(source_, file_, robot_, diagnostics_);
+    leave_out_articles(tokens_, source_, diagnostics_);
+    mend_number_words(tokens_, source_, diagnostics_);
     find_strange_lines();
     mend_foreign_words(tokens_, source_, robot_, diagnostics_);
     mend_indented_blocks(tokens_, source_, diagnostics_);

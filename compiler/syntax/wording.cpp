@@ -374,9 +374,10 @@ private:
       while (next < edit_.at && tokens_[next].kind == Kinds::NEWLINE)
         ++next;
       const std::size_t block = walk.closed();
+      const std::size_t first = next == at + 1 ? at : next;  // of the line with the ELSE
       if (tokens_[next].kind == Kinds::ELSE && tokens_[block].kind == Kinds::IF &&
-          starts_line(tokens_, next) && starts_line(tokens_, block) &&
-          indentation(tokens_[next], source_) == indentation(tokens_[block], source_))
+          starts_line(tokens_, first) && starts_line(tokens_, block) &&
+          indentation(tokens_[first], source_) == indentation(tokens_[block], source_))
         return IdleEnd{block, at};
     }
     return std::nullopt;

@@ -392,8 +392,9 @@ private:
       return std::nullopt;
     if (is(stop_, Kinds::IS) && !is(stop_ + 1, Kinds::NOT)) {
       const Span sign = tokens_[stop_].span;
+      const char* const quote = is(stop_ + 1, Kinds::NAME) ? "\"" : "";
       say(Code::E0001, sign, "a step gives a sensor its value with `=`, not with `IS`",
-          "write `{0} = {1}`", text(begin_ + 2, stop_), text(stop_ + 1, end_))
+          "write `{0} = {2}{1}{2}`", text(begin_ + 2, stop_), text(stop_ + 1, end_), quote)
           .fix(sign, "=", Applicability::likely);
       return change(stop_, 1, {{Kinds::EQUAL, sign}});
     }
