@@ -95,6 +95,7 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
            !did_you_mean(d, value.span, value.text, candidates, "\""))
     d.helps("known devices: " + list_names(candidates));
 }
+  doubt_numbered(d, value.text);
 
 // The device that "device" names, if it is of this kind.
 const Device* named_device(const json::Value& value, const Board& board, bool is_sensor,

@@ -666,6 +666,7 @@ std::optional<vm::Release> read_release(const json::Value& value, Diagnostics& d
 
 const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param, const VerbConfig* verb) {
   if (verb != nullptr && verb->by_unit != nullptr && param == vm::Param::by) return *verb->by_unit;
+  doubt_numbered(d, *text);
   const Unit& number = canonical_unit(vm::Dimension::number);
   switch (param) {
     case vm::Param::to:

@@ -138,4 +138,19 @@ bool did_you_mean(Diagnostic& diagnostic, Span place, std::string_view word,
   return true;
 }
 
+void doubt_numbered(Diagnostic& diagnostic, std::string_view word) {
+  const auto core = [](std::string_view text) {
+    std::string letters;
+    for (const char c : text)
+      if (ascii::is_letter(c) || ascii::is_digit(c)) letters += ascii::lower(c);
+    return letters;
+  };
+  const std::string written = core(word);
+  for (Fix& fix : diagnostic.fixes) {
+    const std::string meant = core(fix.replacement);
+    if (written != meant && std::ranges::any_of(written + meant, ascii::is_digit))
+      fix.applicability = Applicability::likely;
+  }
+}
+
 }  // namespace robosync::compiler

@@ -29,4 +29,8 @@ namespace robosync::compiler {
 bool did_you_mean(Diagnostic& diagnostic, Span place, std::string_view word,
                   std::span<const std::string> candidates, std::string_view quotes = "");
 
+// Names with digits, such as those of chips and boards, have relatives: `tmp102` is not `tmp105` misspelt. Makes the fix of such
+// a `word` likely, unless only case and characters such as `-` and `_` differ.
+void doubt_numbered(Diagnostic& diagnostic, std::string_view word);
+
 }  // namespace robosync::compiler

@@ -179,3 +179,32 @@ TEST_CASE(
   CHECK(is_certain("MOVE amrs TO 30deg", arms));
   CHECK(is_certain("MOVE left_amr TO 30deg", arms));
 }
+
+// A certain fix would make another chip or board of it.
+TEST_CASE("a name with digits is certain only if case and signs alone differ") {
+  const auto is_certain = [](const std::string& robot) {
+    const Result result = compile_text("AT START DO\n  LOG \"a\"\nEND\n", robot);
+    INFO(robot);
+    REQUIRE(result.diagnostics.errors() == 1);
+    const auto& fixes = result.diagnostics.all().front().fixes;
+    REQUIRE(fixes.size() == 1);
+    return fixes.front().applicability == Applicability::certain;
+  };
+  const auto sensor = [](const std::string& device) {
+    return R"({"sensors": [{"name": "it", "device": ")" + device + R"("}]})";
+  };
+  const auto actuator = [](const std::string& device) {
+    return R"({"actuators": [{"name": "it", "device": ")" + device + R"("}]})";
+  };
+  const auto board = [](const std::string& name) { return R"({"board": ")" + name + R"("})"; };
+  for (const char* const other : {"tmp102", "vl53l1x", "mpu6500", "lsm6dso", "lis2mdl", "mcp3004",
+                                  "tmp422", "hc-sr05", "tmp15", "tpm105"})
+    CHECK_FALSE(is_certain(sensor(other)));
+  CHECK_FALSE(is_certain(actuator("ws2811")));
+  for (const char* const other : {"microbit-v1", "nucleo-l475rg", "nucleo-f476rg", "mps2-an385"})
+    CHECK_FALSE(is_certain(board(other)));
+  CHECK(is_certain(sensor("TMP-105")));
+  CHECK(is_certain(sensor("buton")));
+  CHECK(is_certain(actuator("WS 2812")));
+  CHECK(is_certain(board("Microbit_V2")));
+}
