@@ -197,6 +197,10 @@ const Device* find_if(Predicate predicate) {
 
 }  // namespace
 
+bool Device::is_generic() const {
+  return sensor.channels.size() == 1 && sensor.channels.front().name.text == "LEVEL";
+}
+
 bool Device::can_have(std::uint16_t address) const {
   return addresses.empty() || std::ranges::any_of(addresses, [&](const Addresses& row) {
            return address >= row.first && address <= row.last;

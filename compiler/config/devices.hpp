@@ -34,6 +34,8 @@ struct Device {
 
   // True if any of its registers may be read: robot.json says which.
   [[nodiscard]] bool has_registers() const { return inputs == kRegisters; }
+  // True if its one channel is only a pattern: robot.json says what a generic device measures.
+  [[nodiscard]] bool is_generic() const;
   [[nodiscard]] bool can_have(std::uint16_t address) const;
   // The shortest period that gives a new reading each time: the part's, or the driver's if that is longer.
   [[nodiscard]] std::uint16_t shortest_period_ms() const;

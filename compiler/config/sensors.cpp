@@ -9,6 +9,7 @@
 #include "compiler/config/fields.hpp"
 #include "compiler/config/names.hpp"
 #include "compiler/config/values.hpp"
+#include "compiler/diagnostics/nearest.hpp"
 #include "vm/drivers.hpp"
 
 namespace robosync::compiler {
@@ -149,12 +150,41 @@ void read_channel(const json::Value& value, unsigned inputs, ChannelConfig& chan
 
 namespace {
 
-// The descriptor's channel of this name, or else its first channel as the pattern for a new one.
-ChannelConfig pattern_for(const Device& device, const json::Member& member) {
+// A misspelt name would be a second channel, of the first input.
+void report_unknown_channel(const Device& device, const json::Value& channels,
+                            const json::Member& member, Diagnostics& diagnostics) {
+  std::vector<std::string> own, free;
+  for (const ChannelConfig& channel : device.sensor.channels) {
+    own.push_back(channel.name.text);
+    if (std::ranges::none_of(channels.members, [&](const json::Member& other) {
+          return same_name(other.key, channel.name.text);
+        }))
+      free.push_back(channel.name.text);
+  }
+  Diagnostic& d = diagnostics
+                      .report(Code::E0202, "the device `" + device.name + "` has no channel `" +
+                                               member.key + "`")
+                      .label(member.key_span);
+  did_you_mean(d, member.key_span, member.key, free, "\"");
+  d.helps("it has " + list_names(own) + "; one of your own says its `input`");
+}
+
+// The descriptor's channel of this name; else, as the pattern for a new one, that of its input, or the first.
+ChannelConfig pattern_for(const Device& device, const json::Value& channels,
+                          const json::Member& member, Diagnostics& diagnostics) {
   const auto& known = device.sensor.channels;
-  const auto same = std::find_if(known.begin(), known.end(), [&](const ChannelConfig& channel) {
+  auto same = std::ranges::find_if(known, [&](const ChannelConfig& channel) {
     return same_name(channel.name.text, member.key);
   });
+  if (same == known.end() && !device.is_generic()) {
+    const auto input = std::ranges::find(member.value.members, "input", &json::Member::key);
+    if (input == member.value.members.end())
+      report_unknown_channel(device, channels, member, diagnostics);
+    else
+      same = std::ranges::find_if(known, [&](const ChannelConfig& channel) {
+        return std::to_string(channel.input) == input->value.text;
+      });
+  }
   ChannelConfig channel = same == known.end() ? known.front() : *same;
   channel.name = {member.key, member.key_span};
   channel.unit_span = member.key_span;
@@ -185,7 +215,7 @@ void read_channels(const json::Value& value, const Device& device, SensorConfig&
   }
   sensor.channels.clear();
   for (const json::Member& member : value.members) {
-    ChannelConfig channel = pattern_for(device, member);
+    ChannelConfig channel = pattern_for(device, value, member, diagnostics);
     read_channel(member.value, device.inputs, channel, diagnostics);
     sensor.channels.push_back(std::move(channel));
   }

@@ -103,7 +103,7 @@ TEST_CASE("hc_sr04: two channels of it are of one echo, for which it is asked on
   const std::string wiring = R"({
     "sensors": [{"name": "sonar", "type": "GPIO", "trigger": 7, "echo": 41, "device": "hc-sr04",
                  "channels": {"DISTANCE": {"rate": "10Hz"},
-                              "ROUGHLY": {"unit": "m", "range": ["0m", "4m"], "scale": 0.0001715, "rate": "10Hz"}}}]})";
+                              "ROUGHLY": {"input": 0, "unit": "m", "range": ["0m", "4m"], "scale": 0.0001715, "rate": "10Hz"}}}]})";
   Robot robot("WHEN sonar DISTANCE > 99cm AND sonar ROUGHLY > 0.9m DO LOG \"it\" END\n",
               wiring.c_str());
   robot.rig.run(450);
