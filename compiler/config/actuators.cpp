@@ -327,6 +327,14 @@ const Device* meant_drive(const Fields& fields, Diagnostics& diagnostics) {
 
 }  // namespace
 
+bool may_have(const Device& device, std::string_view key) {
+  const auto* const owned = std::ranges::find(kOwnedKeys, key, &OwnedKey::key);
+  if (owned != kOwnedKeys.end()) return owned->has(device.actuator.driver);
+  if (key == "volts") return device.type == "I2C";
+  if (key == "sounds") return device.has_sounds;
+  return key != "speeds" || device.actuator.at_unit != nullptr;
+}
+
 std::optional<ActuatorConfig> read_actuator(const json::Value& value,
                                             std::span<const SensorConfig> sensors,
                                             WiringReader& wiring, Diagnostics& diagnostics) {

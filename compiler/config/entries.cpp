@@ -2,6 +2,7 @@
 #include "compiler/config/entries.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "compiler/config/names.hpp"
 #include "compiler/config/values.hpp"
@@ -94,8 +95,8 @@ void report_unknown_device(const json::Value& value, const Board& board, bool is
   else if (!helps_with_common_device(value, is_sensor, d) &&
            !did_you_mean(d, value.span, value.text, candidates, "\""))
     d.helps("known devices: " + list_names(candidates));
-}
   doubt_numbered(d, value.text);
+}
 
 // The device that "device" names, if it is of this kind.
 const Device* named_device(const json::Value& value, const Board& board, bool is_sensor,
@@ -156,7 +157,29 @@ bool is_fed_here(const Device* device, const Board::Part* part) {
   return device != nullptr && part == nullptr && vm::is_of_board(device->sensor.driver);
 }
 
+// The keys of the wiring: wiring_of() has those that a device takes.
+constexpr std::array<std::string_view, 10> kWiringKeys = {
+    "bus",  "address",         "pin",  "pins", "channel", "enable", "trigger",
+    "echo", "pulses_per_turn", "wheel"};
+
 }  // namespace
+
+bool may_have(const Fields& fields, bool is_sensor, std::string_view key) {
+  const auto* const named = fields.find("device");
+  const auto* const type = fields.find("type");
+  const bool is_virtual = type != nullptr && same_name(type->text, kVirtual);
+  const Device* const device = named != nullptr  ? find_device(named->text, is_sensor)
+                               : type != nullptr ? default_device(type->text, is_sensor)
+                                                 : nullptr;
+  if (device == nullptr) return true;
+  if (std::ranges::find(kWiringKeys, key) != kWiringKeys.end())
+    return is_virtual || (key == "pins" && vm::counts_edges(device->sensor.driver)) ||
+           wiring_of(*device).find("`" + std::string(key) + "`") != std::string::npos;
+  if (key == "register") return device->has_registers();
+  if (key == "format") return device->sensor.driver == vm::DriverId::spi_register;
+  if (key == "active") return device->type == "GPIO" && wiring_of(*device) == "`pin`";
+  return is_sensor || may_have(*device, key);
+}
 
 std::optional<Spelled> read_name(Fields& fields, std::string_view what, Diagnostics& diagnostics) {
   const auto* value = fields.require("name", what);

@@ -55,6 +55,11 @@ inline constexpr std::int8_t kUsualDifference = 4;  // percent
 void scale_encoder(Fields& fields, SensorConfig& sensor, const json::Value* channels,
                    Diagnostics& diagnostics);
 
+// Is `key`, which is not of the wiring, one of this actuator?
+[[nodiscard]] bool may_have(const Device& device, std::string_view key);
+// Is `key` one of the sensor or actuator whose entry this is? True also if its device is not known.
+[[nodiscard]] bool may_have(const Fields& fields, bool is_sensor, std::string_view key);
+
 // The "name" of an entry, checked.
 [[nodiscard]] std::optional<Spelled> read_name(Fields& fields, std::string_view what,
                                                Diagnostics& diagnostics);

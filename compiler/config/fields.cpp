@@ -4,6 +4,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "compiler/config/entries.hpp"
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 
@@ -18,10 +19,14 @@ const Key* find_key(Object object, std::string_view name) {
   return found == keys.end() ? nullptr : &*found;
 }
 
-void report_unknown(const json::Member& member, Object object, Diagnostics& diagnostics) {
+void report_unknown(const json::Member& member, Object object, const Fields& fields,
+                    Diagnostics& diagnostics) {
+  const bool is_sensor = object == Object::sensor;
+  const bool is_part = is_sensor || object == Object::actuator;
   std::vector<std::string> candidates;
   for (const Key& key : known_keys())
-    if (key.object == object) candidates.emplace_back(key.name);
+    if (key.object == object && (!is_part || may_have(fields, is_sensor, key.name)))
+      candidates.emplace_back(key.name);
   Diagnostic& d = diagnostics.report(Code::E0202, "robot.json has no key `" + member.key + "` here")
                       .label(member.key_span);
   if (object == Object::sensor && find_key(Object::channel, member.key) != nullptr) {
@@ -29,7 +34,9 @@ void report_unknown(const json::Member& member, Object object, Diagnostics& diag
             "\": …}}`");
     return;
   }
-  if (!did_you_mean(d, member.key_span, member.key, candidates, "\""))
+  if (object == Object::actuator && member.key == "channels")
+    d.helps("only sensors have channels");
+  else if (!did_you_mean(d, member.key_span, member.key, candidates, "\""))
     d.helps("it can be " + list_names(candidates, "or"));
 }
 
@@ -64,7 +71,7 @@ void Fields::check_key(const json::Member& member, Object object) {
   const Key* key = find_key(object, member.key);
   if (key == nullptr) {
     has_unknown_key_ = true;
-    report_unknown(member, object, diagnostics_);
+    report_unknown(member, object, *this, diagnostics_);
   } else if (key->use == KeyUse::later) {
     diagnostics_.report(Code::W0213, "`" + member.key + "` is not used by this version of rsc yet")
         .label(member.key_span, "this has no effect");

@@ -480,3 +480,28 @@ TEST_CASE("what parts are called elsewhere is no device here, and leads to one")
 #include "compiler/config/common_devices.def"
 #undef COMMON_DEVICE
 }
+
+// Each key of each kind, with a letter too much: what the message suggests must be one that the device takes.
+TEST_CASE("a key is suggested only for a device that has it") {
+  std::size_t suggested = 0;
+  for (const DeviceText& text : device_texts())
+    for (const Key& key : known_keys()) {
+      if (key.object != (text.is_sensor ? Object::sensor : Object::actuator)) continue;
+      const std::string list = text.is_sensor ? "sensors" : "actuators";
+      const nlohmann::json part = {
+          {"name", "x"}, {"device", text.name}, {std::string(key.name) + "x", 1}};
+      std::string robot = nlohmann::json{{list, {part}}}.dump();
+      const Result misspelt = compile_text("", robot);
+      for (const Diagnostic& one : misspelt.diagnostics.all()) {
+        if (one.code != Code::E0202 || one.fixes.empty()) continue;
+        const Fix& fix = one.fixes.front();
+        robot.replace(fix.span.begin, fix.span.end - fix.span.begin, fix.replacement);
+        ++suggested;
+        break;
+      }
+      const std::string said = messages(compile_text("", robot));
+      INFO(robot);
+      CHECK_THAT(said, !Catch::Contains(" has no `") && !Catch::Contains("only a"));
+    }
+  CHECK(suggested > 100);
+}
