@@ -172,6 +172,8 @@ private:
                   ir::Command& result) const;
   static void report_not_taken(const Recipient& to, const Given& given);
   static void report_foreign_word(const Recipient& to, const WordConfig& word, Span span);
+  bool is_in_place_of_actuator(const ast::Command& command, const ast::Word& word) const;
+  void call_it_actuator(const Recipient& to, const ast::Word& word, Diagnostic& d) const;
   void report_unknown_word(const Recipient& to, const ast::Word& word) const;
 
   const Robot& robot_;

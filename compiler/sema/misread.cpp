@@ -339,6 +339,24 @@ static std::vector<std::string> meant_instead(std::vector<std::string> words,
   return words;
 }
 
+// `MOVE leg TO 10deg`, where only `arm` can MOVE: the first word, if no word names an actuator.
+bool Commands::is_in_place_of_actuator(const ast::Command& command, const ast::Word& word) const {
+  return plain_word(command.arguments.front()) == &word &&
+         std::ranges::none_of(command.arguments, [&](const ast::Argument& argument) {
+           const ast::Word* const name = plain_word(argument);
+           return name != nullptr && names_.find_target(name->name.text).has_value();
+         });
+}
+
+// A word that is near the name of an actuator, or where the verb takes only words that are none of it.
+void Commands::call_it_actuator(const Recipient& to, const ast::Word& word, Diagnostic& d) const {
+  const bool near_one = !d.fixes.empty() && names_.find_target(d.fixes.front().replacement);
+  const bool says_nothing = to.verb.texts == Texts::none && !to.verb.has(vm::Param::item);
+  if (!near_one && !(d.help.empty() && says_nothing)) return;
+  d.message = "there is no actuator " + word.name.shown();
+  if (!near_one) d.helps("actuators: " + list_names(names_.target_names()));
+}
+
 void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) const {
   if (is_sensor_meant(to, word, names_)) return;
   Diagnostic& d = to.diagnostics
@@ -365,6 +383,7 @@ void Commands::report_unknown_word(const Recipient& to, const ast::Word& word) c
     d.helps("write `" + to.verb.name + " " + to.actuator.name.text + "`")
         .fix(word.name.span, to.actuator.name.text, Applicability::likely);
   }
+  if (is_in_place_of_actuator(to.command, word)) call_it_actuator(to, word, d);
   if (d.help.empty() && !words.empty()) d.helps("it knows " + list_names(words));
   if (names_.find_list(word.name.text) != nullptr)
     d.helps("it is a LIST; choose one of its texts: `ANY " + std::string(word.name.text) + "`");
