@@ -6,12 +6,25 @@
 
 #include "compiler/config/names.hpp"
 #include "compiler/diagnostics/nearest.hpp"
+#include "compiler/syntax/keywords.hpp"
+#include "compiler/syntax/lexer_state.hpp"
 #include "compiler/syntax/parser.hpp"
 
 namespace robosync::compiler {
 namespace {
 
 constexpr std::size_t kMaxModules = 64;
+
+// A file of another kind does not begin with a word of RSL, and each of its lines would be an error.
+bool is_something_else(std::string_view text, const Diagnostics& said) {
+  constexpr std::size_t kManyErrors = 10;
+  if (said.errors() < kManyErrors) return false;
+  std::size_t at = text.find_first_not_of(" \t\r\n");
+  while (at < text.size() && text[at] == '#')
+    at = text.find_first_not_of(" \t\r\n", text.find('\n', at));
+  text.remove_prefix(std::min(at, text.size()));
+  return !is_keyword(text.substr(0, word_length(text)));
+}
 
 class Loader {
 public:
@@ -47,9 +60,20 @@ private:
     }
     Module module;
     module.file = sources_.add(std::move(input->name), std::move(input->text));
-    module.tree =
-        std::make_unique<const ast::Tree>(parse(sources_, module.file, diagnostics_, robot_));
+    Diagnostics own;
+    module.tree = std::make_unique<const ast::Tree>(parse(sources_, module.file, own, robot_));
     modules_.push_back(std::move(module));
+    if (is_something_else(sources_.file(modules_.back().file).text(), own)) {
+      const Diagnostic& first = own.all().front();
+      diagnostics_
+          .report(Code::E0410,
+                  "the module \"" + std::string(use.module.text) + "\" does not look like RSL")
+          .label(use.module.span)
+          .label(first.labels.front().span, first.message, false);
+      return;
+    }
+    for (const Diagnostic& one : own.all())
+      diagnostics_.add(one);
   }
 
   std::optional<Input> find_built_in(const ast::Use& use) {
@@ -59,7 +83,7 @@ private:
         return Input{"<" + std::string(module.name) + ">", std::string(module.text)};
       names.emplace_back(module.name);
     }
-    if (use.is_guess) return std::nullopt;
+    if (use.is_guess || is_keyword(use.module.text)) return std::nullopt;
     Diagnostic& d = diagnostics_.report(Code::E0501, "there is no module " + use.module.shown())
                         .label(use.module.span);
     if (!did_you_mean(d, use.module.span, use.module.text, names))

@@ -275,14 +275,14 @@ bool has_any(const Diagnostics& diagnostics, std::size_t from, std::span<const C
 
 // True if no report after the first `before` makes the program miss a name or use another unit.
 bool names_and_units_are_known(const Diagnostics& diagnostics, std::size_t before) {
-  constexpr std::array kFelt = {Code::E0202, Code::E0204, Code::E0206, Code::E0208,
-                                Code::E0209, Code::E0301, Code::E0303};
+  constexpr std::array kFelt = {Code::E0202, Code::E0203, Code::E0204, Code::E0206,
+                                Code::E0208, Code::E0209, Code::E0301, Code::E0303};
   return !has_any(diagnostics, before, kFelt);
 }
 
-// True if no name was reported that RSL cannot write. The program cannot use such a name.
+// True if no name was reported that RSL cannot write or that is its word. The program cannot use such a name.
 bool names_can_be_written(const Diagnostics& diagnostics, std::size_t before) {
-  constexpr std::array kFelt = {Code::E0103};
+  constexpr std::array kFelt = {Code::E0102, Code::E0103};
   return !has_any(diagnostics, before, kFelt);
 }
 
@@ -331,6 +331,7 @@ std::optional<Robot> read_robot(const SourceMap& sources, FileId file, Diagnosti
     auto actuator = read_actuator(entry, robot.sensors, wiring, diagnostics);
     if (actuator) robot.actuators.push_back(std::move(*actuator));
   });
+  wiring.report_pins_used_twice();
   if (const auto* pictures = fields.find("pictures")) read_pictures(*pictures, robot, diagnostics);
   robot.complete = names_and_units_are_known(diagnostics, before);
   if (const auto* groups = fields.find("groups")) read_groups(*groups, robot, diagnostics);

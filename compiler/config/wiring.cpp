@@ -192,13 +192,18 @@ void WiringReader::take_drive(const Fields& fields, const WiringType& type) {
 
 void WiringReader::take_pin(std::uint16_t pin, Span span) {
   const auto [first, added] = pins_.emplace(pin, span);
-  if (added) return;
-  Diagnostic& report =
-      diagnostics_.report(Code::E0207, "pin " + std::to_string(pin) + " is used twice")
-          .label(span)
-          .label(first->second, "first used here", false);
-  if (const Board::Pins& bus = board_.spi_pins; on_spi_ && pin >= bus.first && pin <= bus.last)
-    report.helps("the SPI bus of this board has the pins " + bus.text());
+  if (!added) pins_twice_.push_back({pin, span, first->second});
+}
+
+void WiringReader::report_pins_used_twice() {
+  for (const auto& [pin, span, first] : pins_twice_) {
+    Diagnostic& report =
+        diagnostics_.report(Code::E0207, "pin " + std::to_string(pin) + " is used twice")
+            .label(span)
+            .label(first, "first used here", false);
+    if (const Board::Pins& bus = board_.spi_pins; on_spi_ && pin >= bus.first && pin <= bus.last)
+      report.helps("the SPI bus of this board has the pins " + bus.text());
+  }
 }
 
 // The default is a contact to GND on a pin with a pull-up, the most common wiring.
@@ -471,6 +476,7 @@ void WiringReader::take_address(const Fields& fields, const Wiring& place, const
                                                         reported) != place.place))
     return;
   const OnBus taken{.span = said->span, .alone = alone, .device = chip_of(fields, part)};
+  if (taken.device != nullptr && !taken.device->can_have(place.place)) return;  // so it will move
   const auto [entry, added] = on_buses_.emplace(std::pair(place.bus, place.place), taken);
   OnBus& known = entry->second;
   const bool other = taken.device != nullptr && known.device != nullptr;
@@ -637,6 +643,11 @@ void WiringReader::report_no_pin(const json::Value& value, std::uint16_t pin,
   Diagnostics said;
   if (board_.named == Board::Named::wrongly || read_whole(value, 0, UINT16_MAX, said) != pin)
     return;
+  // It will have another pin, so nobody uses this one twice.
+  const auto is_here = [&](Span span) { return span.begin == value.span.begin; };
+  std::erase_if(pins_, [&](const auto& taken) { return is_here(taken.second); });
+  std::erase_if(pins_twice_,
+                [&](const UsedTwice& one) { return is_here(one.span) || is_here(one.first); });
   diagnostics_
       .report(Code::E0205, "on the board " + board_.name + " pin " + std::to_string(pin) + is_no)
       .label(value.span)
@@ -655,6 +666,7 @@ std::optional<std::size_t> read_choice(const json::Value& value,
       diagnostics.report(Code::E0205, "`" + *text + "` is not allowed here").label(value.span);
   if (!did_you_mean(d, value.span, *text, candidates, "\""))
     d.helps("it can be " + list_names(candidates, "or"));
+  doubt_numbered(d, *text);
   return std::nullopt;
 }
 
@@ -666,7 +678,6 @@ std::optional<vm::Release> read_release(const json::Value& value, Diagnostics& d
 
 const Unit& param_unit(const ActuatorConfig& actuator, vm::Param param, const VerbConfig* verb) {
   if (verb != nullptr && verb->by_unit != nullptr && param == vm::Param::by) return *verb->by_unit;
-  doubt_numbered(d, *text);
   const Unit& number = canonical_unit(vm::Dimension::number);
   switch (param) {
     case vm::Param::to:

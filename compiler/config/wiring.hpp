@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "compiler/config/boards.hpp"
 #include "compiler/config/fields.hpp"
@@ -90,6 +91,8 @@ public:
   void check_part(const Fields& fields, const Board::Part* part);
   // A microphone and the analog inputs use the same converter, so a robot has either. Reported once.
   void check_converter(const Fields& fields, bool microphone);
+  // When all have been read: a pin that is wrong for one of them is not also used twice.
+  void report_pins_used_twice();
   [[nodiscard]] const Board& board() const { return board_; }
 
 private:
@@ -133,7 +136,12 @@ private:
 
   Board board_;
   Diagnostics& diagnostics_;
+  struct UsedTwice {
+    std::uint16_t pin;
+    Span span, first;
+  };
   std::map<std::uint16_t, Span> pins_;
+  std::vector<UsedTwice> pins_twice_;
   std::map<std::uint8_t, Span> lines_;
   unsigned encoders_ = 0;
   std::optional<Span> panel_, drive_;

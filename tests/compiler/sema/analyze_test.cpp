@@ -288,6 +288,23 @@ TEST_CASE("a module gives its names; what nobody runs of it need not fit the rob
   CHECK(view(good).header->program_hash != view(changed).header->program_hash);
 }
 
+TEST_CASE("a file that is no module is one error, not one for each of its lines") {
+  const std::string program = "USE \"own.rsl\"\n" + rule("touch LEVEL > 3", "nod");
+  std::string other = "# users\n";
+  for (int i = 0; i < 10; ++i)
+    other += "list" + std::to_string(i) + ":x:38:38:Mailing List:/bin/sh\n";
+  const Result wrong = with_module(program, other);
+  INFO(messages(wrong));
+  CHECK(wrong.diagnostics.errors() == 1);
+  CHECK(wrong.diagnostics.all().front().code == Code::E0410);
+  std::string own;
+  for (int i = 0; i < 10; ++i)
+    own += "DEFINE nod" + std::to_string(i) + "\n MOVE left_arm TO TO 3deg\nEND\n";
+  const Result misspelt = with_module(program, own);
+  INFO(messages(misspelt));
+  CHECK(misspelt.diagnostics.errors() >= 10);
+}
+
 TEST_CASE("two modules that bring one name: both places, and a way out") {
   const Result both =
       with_module("USE gestures\nUSE \"own.rsl\"\n" + rule("touch LEVEL > 3", "PERFORM nod"),
