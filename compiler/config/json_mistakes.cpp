@@ -86,7 +86,10 @@ Diagnostic& at_end(const Mistake& mistake, Diagnostics& diagnostics) {
 
 std::string describe_word(std::string_view word) {
   const char c = word.front();
-  if (std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.')
+  const bool no_number =
+      ascii::same(word, "NaN") || ascii::same(word, "Infinity") || ascii::same(word, "inf");
+  if (std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.' ||
+      no_number)
     return "JSON cannot read `" + std::string(word) + "` as a number";
   return "`" + std::string(word) + "` needs double quotes here";
 }
@@ -238,6 +241,64 @@ bool is_wrong_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostic
   return true;
 }
 
+// `"sensors": {{"name": "a"}]`
+void report_wrong_opener(const Mistake& mistake, std::size_t opening, Diagnostics& diagnostics) {
+  const bool list = mistake.text[opening] == '{';
+  const std::string better = list ? "[" : "{";
+  const Span here = span_of(mistake, opening, opening + 1);
+  Diagnostic& d =
+      diagnostics
+          .report(Code::E0201, std::string(list ? "a list" : "an object") + " begins with `" +
+                                   better + "`, not with `" + mistake.text[opening] + "`")
+          .label(here);
+  std::string mended(mistake.text);
+  mended[opening] = better[0];
+  if (is_balanced(mended)) d.fix(here, better, Applicability::likely);
+}
+
+// `{"name": "a", {"name": "b"}`, `["a", "key": 1]`: an object in place of a key, or a key in a list.
+bool is_unclosed_before(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  if (!mistake.open_span) return false;
+  const std::string_view text = mistake.text;
+  const std::size_t opening = mistake.open_span->begin;
+  const char c = text[wrong.begin];
+  const bool is_object = text[opening] == '{' && c == '{' && wrong.previous != ':';
+  if (!is_object && (text[opening] != '[' || c != ':' || wrong.previous != '"')) return false;
+  const std::size_t begin = is_object ? wrong.begin : text.rfind('"', wrong.before - 1);
+  const std::size_t before = text.find_last_not_of(" \t\r\n", begin - 1);
+  if (before == opening) {
+    report_wrong_opener(mistake, opening, diagnostics);
+    return true;
+  }
+  const std::string closer(1, closer_of(text[opening]));
+  const bool comma = text[before] == ',';
+  const std::size_t place = comma ? before : before + 1;
+  const std::string missing = comma ? closer : closer + ",";
+  std::string mended(text);
+  if (!is_balanced(mended.insert(place, missing))) return false;
+  diagnostics.report(Code::E0201, "`" + closer + "` is missing before this")
+      .label(span_of(mistake, begin, is_object ? begin + 1 : wrong.before + 1))
+      .label(span_of(mistake, opening, opening + 1), "opened here", false)
+      .fix(span_of(mistake, place, place), missing, Applicability::likely);
+  return true;
+}
+
+// `"\ud800"`, `"\u12"`, `"\q"`
+bool is_wrong_escape(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  std::string_view what;
+  if (mentions(mistake, "surrogate"))
+    what = "JSON needs both halves of such a character, as in `\\ud83d\\ude00`";
+  else if (mentions(mistake, "hex digits"))
+    what = "`\\u` needs four hexadecimal digits";
+  else if (mentions(mistake, "after backslash"))
+    what = "JSON has no such character with `\\`; a backslash is written `\\\\`";
+  else
+    return false;
+  diagnostics.report(Code::E0201, std::string(what))
+      .label(span_of(mistake, wrong.begin, wrong.end));
+  return true;
+}
+
 // `"range": (0, 90)`
 bool is_round_bracket(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
   const std::string_view text = mistake.text;
@@ -287,6 +348,21 @@ bool stands_twice(const Mistake& mistake, const WrongText& wrong, Diagnostics& d
       diagnostics.report(Code::E0201, "`" + std::string(word) + "` is written twice in a row")
           .label(span_of(mistake, wrong.begin, end));
   mend(mistake, span_of(mistake, behind, end), "", d);
+  return true;
+}
+
+// `"type": "PWM",, "pin": 3`. In `[2,, 3]` a number may be missing instead.
+bool is_second_comma(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
+  const char before = wrong.previous;
+  if (mistake.text[wrong.begin] != ',' || !mistake.open_span ||
+      (before != ',' && before != '{' && before != '['))
+    return false;
+  const Span comma = span_of(mistake, wrong.begin, wrong.end);
+  Diagnostic& d = diagnostics.report(Code::E0201, "there is an extra comma").label(comma);
+  if (mistake.text[mistake.open_span->begin] == '{')
+    mend(mistake, comma, "", d);
+  else
+    d.fix(comma, "", Applicability::likely);
   return true;
 }
 
@@ -345,12 +421,15 @@ bool is_bare_measure(const Mistake& mistake, const WrongText& wrong, Diagnostics
 }
 
 bool is_mended(const Mistake& mistake, const WrongText& wrong, Diagnostics& diagnostics) {
-  return is_in_curly_quotes(mistake, wrong, diagnostics) ||
+  return is_wrong_escape(mistake, wrong, diagnostics) ||
+         is_in_curly_quotes(mistake, wrong, diagnostics) ||
          is_unclosed_string(mistake, wrong, diagnostics) ||
          is_wrong_bracket(mistake, wrong, diagnostics) ||
+         is_unclosed_before(mistake, wrong, diagnostics) ||
          is_round_bracket(mistake, wrong, diagnostics) ||
          is_semicolon(mistake, wrong, diagnostics) || stands_twice(mistake, wrong, diagnostics) ||
          is_extra_comma(mistake, wrong, diagnostics) ||
+         is_second_comma(mistake, wrong, diagnostics) ||
          (is_word(mistake.text[wrong.begin]) && is_foreign_word(mistake, wrong, diagnostics));
 }
 
