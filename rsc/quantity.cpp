@@ -2,19 +2,42 @@
 #include "rsc/quantity.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "compiler/source/ascii.hpp"
 #include "compiler/units/units.hpp"
 
 namespace robosync::tool {
 namespace {
 
 bool is_number_part(char c) {
-  return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+';
+  return compiler::ascii::is_digit(c) || c == '.' || c == '-' || c == '+';
+}
+
+// How much of the text is a number, with an exponent as other programs write it: 1e-05.
+std::size_t number_length(std::string_view text) {
+  const auto end =
+      static_cast<std::size_t>(std::ranges::find_if_not(text, is_number_part) - text.begin());
+  if (end == 0 || end == text.size() || (text[end] != 'e' && text[end] != 'E')) return end;
+  const std::size_t digits = std::min(text.find_first_not_of("+-", end + 1), text.size());
+  std::size_t last = digits;
+  while (last < text.size() && compiler::ascii::is_digit(text[last]))
+    ++last;
+  return last > digits ? last : end;
+}
+
+// Other programs write more digits than the compiler reads: 0.30000000000000004.
+std::optional<compiler::Decimal> number_of(const std::string& digits) {
+  if (const auto exact = compiler::parse_decimal(digits)) return exact;
+  char* end = nullptr;
+  const double number = std::strtod(digits.c_str(), &end);
+  if (digits.empty() || *end != '\0') return std::nullopt;
+  return compiler::parse_decimal(fmt::format("{:.6f}", number));
 }
 
 std::string_view trim(std::string_view text) {
@@ -42,9 +65,8 @@ std::string way_out(std::string_view number, vm::Dimension dimension, std::strin
 
 vm::Value parse_quantity(std::string_view text, vm::Dimension dimension, std::string_view own) {
   const std::string_view whole = trim(text);
-  const auto unit_at = std::ranges::find_if_not(whole, is_number_part);
-  const auto digits = static_cast<std::size_t>(unit_at - whole.begin());
-  const auto number = compiler::parse_decimal(whole.substr(0, digits));
+  const std::size_t digits = number_length(whole);
+  const auto number = number_of(std::string(whole.substr(0, digits)));
   if (!number) throw std::invalid_argument(fmt::format("`{}` is not a number with a unit", text));
   const std::string_view spelling = trim(whole.substr(digits));
   if (spelling.starts_with(','))

@@ -19,6 +19,17 @@ TEST_CASE("quantities with the unit of their dimension") {
   CHECK(parse_quantity("50%", Dimension::percent) == 50'000);
 }
 
+TEST_CASE("numbers as other programs write them") {
+  CHECK(parse_quantity("1e-05m", Dimension::length) == 10);
+  CHECK(parse_quantity("-2.5E+1 cm", Dimension::length) == -250'000);
+  CHECK(parse_quantity("1e3", Dimension::number) == 1'000'000);
+  CHECK(parse_quantity("0.30000000000000004", Dimension::number) == 300);
+  CHECK(parse_quantity("1.2345678901234567e-05m", Dimension::length) == 12);
+  CHECK_THROWS_WITH(parse_quantity("1e-", Dimension::number),
+                    Catch::Contains("there is no unit `e-`"));
+  CHECK_THROWS_WITH(parse_quantity("-", Dimension::number), Catch::Contains("not a number"));
+}
+
 TEST_CASE("what is not a quantity of the dimension is said") {
   using Catch::Contains;
   CHECK_THROWS_WITH(parse_quantity("", Dimension::number), Contains("not a number"));
