@@ -79,9 +79,7 @@ void Fields::check_key(const json::Member& member, Object object) {
 }
 
 const json::Value* Fields::find(std::string_view key) const {
-  const auto found = std::find_if(value_.members.begin(), value_.members.end(),
-                                  [&](const json::Member& member) { return member.key == key; });
-  if (found != value_.members.end()) return &found->value;
+  if (const json::Value* const found = json::find(value_, key)) return found;
   return assumed_ && assumed_->key == key ? &assumed_->value : nullptr;
 }
 

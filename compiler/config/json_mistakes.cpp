@@ -396,14 +396,13 @@ bool is_other_format(const Mistake& mistake, const WrongText& wrong, Diagnostics
   Diagnostic& message =
       diagnostics
           .report(Code::E0201,
-                  assigned
-                      ? "a robot.json is an object alone: nothing stands before it"
-                      : "this looks like " + std::string(format) + ", but a robot.json is JSON")
+                  assigned ? "JSON is an object alone: nothing stands before it"
+                           : "this looks like " + std::string(format) + ", but rsc reads JSON here")
           .label(span_of(mistake, wrong.begin, wrong.end));
   if (assigned)
     message.helps("begin with `{`");
   else
-    message.helps("such as `{\"sensors\": [{\"name\": \"touch\", \"type\": \"VIRTUAL\"}]}`");
+    message.helps("such as `{\"key\": [\"text\", 1.5, true]}`");
   return true;
 }
 

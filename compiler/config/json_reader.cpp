@@ -1,6 +1,7 @@
 // Turns JSON text into a tree with source positions. The text may be anything; every mistake becomes one E0201.
 #include "compiler/config/json_reader.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "compiler/config/json_mistakes.hpp"
@@ -140,6 +141,11 @@ std::optional<Value> read(const SourceMap& sources, FileId file, Diagnostics& di
   // Everything reads JSON from a std::string: for another type the library would make a parser of its own.
   if (!Json::sax_parse(std::string(text), &builder)) return std::nullopt;
   return builder.take();
+}
+
+const Value* find(const Value& object, std::string_view key) {
+  const auto found = std::ranges::find(object.members, key, &Member::key);
+  return found == object.members.end() ? nullptr : &found->value;
 }
 
 std::string_view kind_phrase(Kind kind) {

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diagnostics/diagnostic.hpp"
@@ -37,6 +38,9 @@ inline constexpr std::size_t kMaxDepth = 32;
 // nullopt if the text is not JSON or is nested deeper than kMaxDepth; either is reported.
 [[nodiscard]] std::optional<Value> read(const SourceMap& sources, FileId file,
                                         Diagnostics& diagnostics);
+
+// The first value with this key; null: there is none, or it is no object.
+[[nodiscard]] const Value* find(const Value& object, std::string_view key);
 
 [[nodiscard]] std::string_view kind_phrase(Kind kind);  // "a string"
 

@@ -29,11 +29,6 @@ FileKind kind_of(const fs::path& path, const Workspace& workspace) {
   return open != nullptr ? kind_of_text(open->source.text()) : kind_of_file(path);
 }
 
-const json::Value* find(const json::Value& object, std::string_view key) {
-  const auto found = std::ranges::find(object.members, key, &json::Member::key);
-  return found == object.members.end() ? nullptr : &found->value;
-}
-
 }  // namespace
 
 class ScenarioReader {
@@ -46,7 +41,7 @@ public:
     if (!file) return;
     compiler::Diagnostics ignored;
     const auto root = json::read(sources_, *file, ignored);
-    const json::Value* const stimuli = root ? find(*root, "stimuli") : nullptr;
+    const json::Value* const stimuli = root ? json::find(*root, "stimuli") : nullptr;
     if (stimuli == nullptr) return;
     for (const json::Value& stimulus : stimuli->items)
       read_stimulus(stimulus, scenario.parent_path());
@@ -72,9 +67,9 @@ private:
   }
 
   void read_stimulus(const json::Value& stimulus, const fs::path& folder) {
-    const Span sensor = inside(find(stimulus, "sensor"));
-    const Span channel = inside(find(stimulus, "channel"));
-    const json::Value* const csv = find(stimulus, "csv");
+    const Span sensor = inside(json::find(stimulus, "sensor"));
+    const Span channel = inside(json::find(stimulus, "channel"));
+    const json::Value* const csv = json::find(stimulus, "csv");
     if (channel.end > 0)
       said_.push_back({sources_.text(sensor), sensor, channel});
     else

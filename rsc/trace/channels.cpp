@@ -16,16 +16,15 @@
 namespace robosync::tool {
 namespace {
 
+// `what`: "there is no sensor", "touch has no channel".
 [[noreturn]] void no_such(std::string_view what, std::string_view name,
                           const std::vector<std::string>& known) {
-  constexpr std::size_t kMostListed = 8;
-  const auto near = compiler::nearest(name, known);
-  std::string mend;
-  if (near)
-    mend = fmt::format("; did you mean `{}`?", *near);
-  else if (known.size() <= kMostListed)
-    mend = fmt::format("; known: {}", fmt::join(known, ", "));
-  throw std::invalid_argument(fmt::format("there is no {} `{}`{}", what, name, mend));
+  throw std::invalid_argument(fmt::format("{} `{}`{}", what, name, instead_of(name, known)));
+}
+
+[[noreturn]] void no_such_channel(std::string_view sensor, std::string_view name,
+                                  const std::vector<std::string>& known) {
+  no_such(fmt::format("{} has no channel", sensor), name, known);
 }
 
 [[noreturn]] void has_several(std::string_view sensor, const std::vector<std::string>& channels) {
@@ -49,22 +48,12 @@ std::uint8_t channel_of(const vm::Image& image, const vm::Sensor& sensor, std::s
     known.emplace_back(candidate);
   }
   if (name.empty()) has_several(image.string(sensor.name), known);
-  no_such(fmt::format("channel of {}", image.string(sensor.name)), name, known);
+  no_such_channel(image.string(sensor.name), name, known);
 }
 
-// Is this the channel `name` ("touch.LEVEL"), or a candidate if no channel is named?
-bool is_channel(std::string_view name, std::string_view sensor, std::string_view channel) {
-  const std::size_t dot = name.find('.');
-  return compiler::ascii::same(name.substr(0, dot), sensor) &&
-         (channel.empty() || compiler::ascii::same(name.substr(dot + 1), channel));
-}
-
-// The sensor's channels in robot.json, also those that the program does not read.
-std::vector<std::string> channels_of(const Program& program, std::string_view sensor) {
-  std::vector<std::string> names;
-  for (const auto& [name, unit] : program.origin().units.channels)
-    if (is_channel(name, sensor, {})) names.push_back(name.substr(name.find('.') + 1));
-  return names;
+// A sensor with one channel need not name it.
+bool is_meant(std::string_view channel, std::string_view name) {
+  return name.empty() || compiler::ascii::same(channel, name);
 }
 
 struct DottedName {
@@ -77,7 +66,32 @@ DottedName split(std::string_view name) {
   return {name.substr(0, at), name.substr(at + 1)};
 }
 
+struct KnownChannel {
+  DottedName name;
+  const compiler::Unit* unit;
+};
+
+// Those of robot.json, also if the program does not read them; those of the image if only that is known.
+std::vector<KnownChannel> all_channels(const Program& program) {
+  std::vector<KnownChannel> all;
+  for (const auto& [name, unit] : program.origin().units.channels)
+    all.push_back({split(name), unit});
+  if (!all.empty()) return all;
+  const vm::Image& image = program.image();
+  for (const vm::Channel& channel : image.channels)
+    all.push_back(
+        {{image.string(image.sensors[channel.sensor].name), image.string(channel.name)}, nullptr});
+  return all;
+}
+
 }  // namespace
+
+std::string instead_of(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kMostListed = 8;
+  if (const auto near = compiler::nearest(name, known))
+    return fmt::format("; did you mean `{}`?", *near);
+  return known.size() <= kMostListed ? fmt::format("; known: {}", fmt::join(known, ", ")) : "";
+}
 
 std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
                           std::string_view channel) {
@@ -87,7 +101,7 @@ std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
     if (compiler::ascii::same(name, sensor)) return channel_of(image, candidate, channel);
     known.emplace_back(name);
   }
-  no_such("sensor", sensor, known);
+  no_such("there is no sensor", sensor, known);
 }
 
 std::uint8_t find_channel(const vm::Image& image, std::string_view name) {
@@ -95,22 +109,28 @@ std::uint8_t find_channel(const vm::Image& image, std::string_view name) {
   return find_channel(image, parts.sensor, parts.channel);
 }
 
-std::optional<std::uint8_t> find_read_channel(const Program& program, std::string_view sensor,
-                                              std::string_view channel) {
+FoundChannel find_read_channel(const Program& program, std::string_view sensor,
+                               std::string_view channel) {
   const DottedName name = channel.empty() ? split(sensor) : DottedName{sensor, channel};
-  const auto meant = [&](const auto& entry) {
-    return is_channel(entry.first, name.sensor, name.channel);
-  };
-  const std::vector<std::string> all = channels_of(program, name.sensor);
-  if (name.channel.empty() && all.size() > 1) has_several(name.sensor, all);
+  std::vector<std::string> sensors, channels;
+  const compiler::Unit* unit = nullptr;
+  for (const auto& [known, its_unit] : all_channels(program)) {
+    if (sensors.empty() || sensors.back() != known.sensor) sensors.emplace_back(known.sensor);
+    if (!compiler::ascii::same(known.sensor, name.sensor)) continue;
+    channels.emplace_back(known.channel);
+    if (is_meant(known.channel, name.channel)) unit = its_unit;
+  }
+  if (channels.empty()) no_such("there is no sensor", name.sensor, sensors);
+  if (name.channel.empty() && channels.size() > 1) has_several(name.sensor, channels);
+  const auto is_name = [&](std::string_view known) { return is_meant(known, name.channel); };
+  if (std::ranges::none_of(channels, is_name)) no_such_channel(name.sensor, name.channel, channels);
   const vm::Image& image = program.image();
   const bool read = std::ranges::any_of(image.channels, [&](const vm::Channel& candidate) {
     return compiler::ascii::same(image.string(image.sensors[candidate.sensor].name), name.sensor) &&
-           (name.channel.empty() ||
-            compiler::ascii::same(image.string(candidate.name), name.channel));
+           is_name(image.string(candidate.name));
   });
-  if (!read && std::ranges::any_of(program.origin().units.channels, meant)) return std::nullopt;
-  return find_channel(image, name.sensor, name.channel);
+  if (!read) return {std::nullopt, unit};
+  return {find_channel(image, name.sensor, name.channel), unit};
 }
 
 std::string_view unit_of(const Program& program, std::uint8_t channel) {
@@ -135,7 +155,7 @@ vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::strin
   }
   if (labels.size() == 2 && compiler::ascii::same(text, "false")) return 0;
   if (labels.size() == 2 && compiler::ascii::same(text, "true")) return vm::kScale;
-  no_such(fmt::format("reading of {}", image.string(record.name)), text, labels);
+  no_such(fmt::format("{} has no word", image.string(record.name)), text, labels);
 }
 
 }  // namespace robosync::tool

@@ -6,22 +6,29 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "compiler/units/units.hpp"
 #include "rsc/program.hpp"
 #include "vm/image.hpp"
 
 namespace robosync::tool {
+
+// "; did you mean `touch`?", or else "; known: touch, voice" if these are few.
+[[nodiscard]] std::string instead_of(std::string_view name, const std::vector<std::string>& known);
 
 // Ignores case. Throws std::invalid_argument with the reason and the nearest name.
 [[nodiscard]] std::uint8_t find_channel(const vm::Image& image, std::string_view name);
 [[nodiscard]] std::uint8_t find_channel(const vm::Image& image, std::string_view sensor,
                                         std::string_view channel);
 
-// Nothing: robot.json has the channel, but the program does not read it, so the image lacks it.
-// `sensor` may be the whole name, "touch.LEVEL", if `channel` is empty.
-[[nodiscard]] std::optional<std::uint8_t> find_read_channel(const Program& program,
-                                                            std::string_view sensor,
-                                                            std::string_view channel);
+struct FoundChannel {
+  std::optional<std::uint8_t> read;  // none: the program does not read it, so the image lacks it
+  const compiler::Unit* unit = nullptr;  // in robot.json; null: not known
+};
+// Knows all channels of robot.json. `sensor` may be the whole name, "touch.LEVEL", if `channel` is empty.
+[[nodiscard]] FoundChannel find_read_channel(const Program& program, std::string_view sensor,
+                                             std::string_view channel);
 
 // The unit of its numbers in robot.json; empty: none, or not known.
 [[nodiscard]] std::string_view unit_of(const Program& program, std::uint8_t channel);

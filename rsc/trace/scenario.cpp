@@ -1,4 +1,4 @@
-// Uses Jansson. The text is not trusted. Promises that a wrong scenario gets one message with file
+// The text is not trusted. Promises that a wrong scenario gets one message with file
 // and line, and that a valid one has its stimuli in order of time.
 #include "rsc/trace/scenario.hpp"
 
@@ -6,15 +6,13 @@
 #include <array>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
-#include <jansson.h>
 
-#include "compiler/diagnostics/nearest.hpp"
+#include "compiler/config/json_reader.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/sorting.hpp"
 #include "compiler/units/units.hpp"
@@ -23,18 +21,22 @@
 #include "rsc/quantity.hpp"
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/csv.hpp"
-#include "rsc/trace/json_lines.hpp"
 #include "rsc/trace/sound.hpp"
 
 namespace robosync::tool {
+namespace json = compiler::json;
+using compiler::Span;
+
 namespace {
 
 constexpr std::uint64_t kRampPeriodUs = 50'000;  // for a sensor without its own period
 constexpr std::size_t kMaxStimuli = 1'000'000;
 
-struct FreeJson {
-  void operator()(json_t* value) const { json_decref(value); }
+// Where other keys are often written, in stimuli that have these.
+struct OtherKey {
+  std::string_view word, key;
 };
+constexpr std::array kOtherKeys = {OtherKey{"time", "at"}, OtherKey{"value", "ramp"}};
 
 std::uint64_t microseconds(std::string_view text) {
   return static_cast<std::uint64_t>(parse_duration(text).count()) * 1000;
@@ -43,101 +45,138 @@ std::uint64_t microseconds(std::string_view text) {
 class ScenarioReader {
 public:
   ScenarioReader(const std::string& file, const Program& program)
-      : file_(file), text_(read_text(file)), program_(program), image_(program.image()) {}
+      : file_(file), program_(program), image_(program.image()) {
+    sources_.add(file, read_text(file));
+  }
 
   Scenario read();
 
 private:
-  [[noreturn]] void fail(std::size_t line, std::string_view message) const {
-    throw Failure(Exit::program, fmt::format("{}:{}: {}", file_, line, message));
+  std::size_t line_of(Span span) const { return sources_.file(span.file).line_of(span.begin); }
+
+  [[noreturn]] void fail(Span span, std::string_view message) const {
+    throw Failure(Exit::program, fmt::format("{}:{}: {}", file_, line_of(span), message));
   }
 
-  // The line of a key in the current element, or else of the element.
-  std::size_t line_of_key(std::string_view key) const {
-    const std::string_view element(text_.data() + element_.begin, element_.end - element_.begin);
-    const std::size_t at = element.find(fmt::format("\"{}\"", key));
-    return line_of(text_, element_.begin + (at == std::string_view::npos ? 0 : at));
-  }
-
-  // Reports an error inside `body` as an error in the value of this key.
+  // Reports an error inside `body` as an error in this value.
   template <typename Body>
-  auto at_key(std::string_view key, Body body) const {
+  auto in(const json::Value& value, Body body) const {
     try {
       return body();
     } catch (const std::invalid_argument& error) {
-      fail(line_of_key(key), error.what());
+      fail(value.span, error.what());
     }
   }
 
-  // If `read` cannot open the file, the error is reported at this key. Errors inside the file have
+  // If `read` cannot open the file, the error is reported at this value. Errors inside the file have
   // their own place.
   template <typename Read>
-  auto named_by(std::string_view key, Read read) const {
+  auto named_by(const json::Value& value, Read read) const {
     try {
       return read();
     } catch (const Failure& error) {
       if (error.exit() != Exit::outside) throw;
-      throw Failure(Exit::outside, fmt::format("{}:{}: {}", file_, line_of_key(key), error.what()));
+      throw Failure(Exit::outside,
+                    fmt::format("{}:{}: {}", file_, line_of(value.span), error.what()));
     }
   }
 
-  void check_keys(json_t* object, std::initializer_list<const char*> known) const {
-    const std::vector<std::string> names(known.begin(), known.end());
-    const char* key = nullptr;
-    json_t* value = nullptr;
-    json_object_foreach(object, key, value) {
-      if (std::ranges::find(names, key) != names.end()) continue;
-      const auto near = compiler::nearest(key, names);
-      fail(line_of_key(key), fmt::format("there is no key `{}` here{}", key,
-                                         near ? fmt::format("; did you mean `{}`?", *near) : ""));
+  // In plain words, as for robot.json, on one line.
+  [[noreturn]] void fail_as(const compiler::Diagnostic& mistake) const {
+    std::string message = mistake.message;
+    Span place;
+    for (const compiler::Label& label : mistake.labels) {
+      if (label.primary) place = label.span;
+      if (label.text.empty()) continue;
+      const std::string line = label.primary ? "" : fmt::format("line {}: ", line_of(label.span));
+      message += fmt::format("; {}{}", line, label.text);
+    }
+    for (const std::string& help : mistake.help)
+      message += "; " + help;
+    fail(place, message);
+  }
+
+  json::Value parse() const {
+    compiler::Diagnostics diagnostics;
+    std::optional<json::Value> root = json::read(sources_, 0, diagnostics);
+    if (!root) fail_as(diagnostics.all().front());
+    return std::move(*root);
+  }
+
+  void check_keys(const json::Value& object, const std::vector<std::string>& known) const {
+    std::set<std::string_view> given;
+    for (const json::Member& member : object.members) {
+      if (std::ranges::find(known, member.key) == known.end())
+        fail(member.key_span, fmt::format("there is no key `{}` here{}", member.key,
+                                          instead_of_key(member.key, known)));
+      if (!given.insert(member.key).second)
+        fail(member.key_span, fmt::format("the key `{}` is given twice", member.key));
     }
   }
 
-  static std::uint64_t time(json_t* value) {
-    if (!json_is_string(value)) {
-      throw std::invalid_argument("a time is a string with a unit, like \"1.5s\"");
-    }
-    return microseconds(json_string_value(value));
+  static std::string instead_of_key(std::string_view key, const std::vector<std::string>& known) {
+    for (const OtherKey& other : kOtherKeys)
+      if (other.word == key && std::ranges::find(known, other.key) != known.end())
+        return fmt::format("; did you mean `{}`?", other.key);
+    return instead_of(key, known);
+  }
+
+  std::uint64_t time(const json::Value& value) const {
+    if (value.kind != json::Kind::string)
+      fail(value.span, "a time is a string with a unit, like \"1.5s\"");
+    return in(value, [&] { return microseconds(value.text); });
   }
 
   // A bare number is only for channels without a unit; others take a number with a unit, or one of
   // their words.
-  vm::Value reading(json_t* value, std::uint8_t channel) const {
-    const auto parse = [&](std::string_view text) {
-      return parse_reading(image_, channel, text, unit_of(program_, channel));
-    };
-    if (json_is_string(value)) return parse(json_string_value(value));
-    if (json_is_boolean(value) && image_.channels[channel].label_count > 0)
-      return parse(json_is_true(value) ? "true" : "false");
-    if (json_is_integer(value)) return parse(std::to_string(json_integer_value(value)));
-    if (json_is_real(value)) return parse(fmt::format("{:.3f}", json_real_value(value)));
-    throw std::invalid_argument(
-        "a reading is a number, a string with a unit like \"20cm\", or a word of the channel");
+  vm::Value reading(const json::Value& value, std::uint8_t channel) const {
+    const bool words = image_.channels[channel].label_count > 0;
+    std::string_view text = value.text;
+    if (value.kind == json::Kind::boolean && words)
+      text = value.truth ? "true" : "false";
+    else
+      check_reading(value);
+    return in(value,
+              [&] { return parse_reading(image_, channel, text, unit_of(program_, channel)); });
   }
 
-  json_t* need(json_t* object, const char* key) const {
-    json_t* const value = json_object_get(object, key);
-    if (value == nullptr) {
-      fail(line_of(text_, element_.begin), fmt::format("this stimulus has no `{}`", key));
-    }
+  void check_reading(const json::Value& value) const {
+    if (value.kind != json::Kind::string && value.kind != json::Kind::number)
+      fail(value.span,
+           "a reading is a number, a string with a unit like \"20cm\", or a word of the channel");
+  }
+
+  // For the program it has no effect; but a unit that its channel does not have is a mistake.
+  void check_unread(const json::Value& value, const compiler::Unit* unit) const {
+    if (unit == nullptr || unit->spelling.empty()) return;  // words, or none
+    check_reading(value);
+    in(value, [&] { return parse_quantity(value.text, unit->dimension, unit->spelling); });
+  }
+
+  const json::Value& need(const json::Value& object, const char* key) const {
+    const json::Value* const value = json::find(object, key);
+    if (value == nullptr) fail(object.span, fmt::format("this stimulus has no `{}`", key));
+    return *value;
+  }
+
+  const json::Value& need_string(const json::Value& object, const char* key) const {
+    const json::Value& value = need(object, key);
+    if (value.kind != json::Kind::string)
+      fail(value.span, fmt::format("`{}` is not a string", key));
     return value;
   }
 
-  std::string_view need_string(json_t* object, const char* key) const {
-    json_t* const value = need(object, key);
-    if (!json_is_string(value)) fail(line_of_key(key), fmt::format("`{}` is not a string", key));
-    return json_string_value(value);
-  }
-
-  // Nothing, with a note, if the program does not read it.
-  std::optional<std::uint8_t> channel_of(json_t* stimulus) {
-    const std::string_view sensor = need_string(stimulus, "sensor");
-    const bool named = json_object_get(stimulus, "channel") != nullptr;
-    const std::string_view channel = named ? need_string(stimulus, "channel") : "";
-    const char* const key = named ? "channel" : "sensor";
-    const auto found = at_key(key, [&] { return find_read_channel(program_, sensor, channel); });
-    if (!found)
-      note(file_, line_of_key(key), fmt::format("{}{}{}", sensor, named ? " " : "", channel));
+  // With a note if the program does not read it.
+  FoundChannel channel_of(const json::Value& stimulus) {
+    const json::Value& sensor = need_string(stimulus, "sensor");
+    const bool named = json::find(stimulus, "channel") != nullptr;
+    const json::Value& last = named ? need_string(stimulus, "channel") : sensor;
+    const std::string_view channel = named ? last.text : std::string_view();
+    const FoundChannel found =
+        in(last, [&] { return find_read_channel(program_, sensor.text, channel); });
+    if (!found.read)
+      note(file_, line_of(last.span),
+           fmt::format("{}{}{}", sensor.text, named ? " " : "", channel));
     return found;
   }
 
@@ -150,29 +189,24 @@ private:
                     file, line, channel));
   }
 
-  void read_stimuli(json_t* stimuli) {
-    if (stimuli == nullptr) return;
-    if (!json_is_array(stimuli)) fail(line_of_key("stimuli"), "`stimuli` is not an array");
-    const std::vector<TextRange> places = array_elements(text_, "stimuli");
-    std::size_t index = 0;
-    json_t* stimulus = nullptr;
-    json_array_foreach(stimuli, index, stimulus) {
-      element_ = places.at(index);
-      if (!json_is_object(stimulus)) {
-        fail(line_of(text_, element_.begin), "a stimulus is an object");
-      }
+  void read_stimuli(const json::Value& stimuli) {
+    if (stimuli.kind != json::Kind::array) fail(stimuli.span, "`stimuli` is not an array");
+    for (const json::Value& stimulus : stimuli.items) {
+      stimulus_ = stimulus.span;
+      if (stimulus.kind != json::Kind::object) fail(stimulus.span, "a stimulus is an object");
       read_stimulus(stimulus);
     }
   }
 
-  void read_stimulus(json_t* stimulus) {
-    if (json_object_get(stimulus, "csv") != nullptr) {
+  void read_stimulus(const json::Value& stimulus) {
+    const auto has = [&](const char* key) { return json::find(stimulus, key) != nullptr; };
+    if (has("csv")) {
       check_keys(stimulus, {"csv", "at", "sensor"});
       read_recording(stimulus);
-    } else if (json_object_get(stimulus, "sound") != nullptr) {
+    } else if (has("sound")) {
       check_keys(stimulus, {"sound", "at", "sensor"});
       read_sound(stimulus);
-    } else if (json_object_get(stimulus, "ramp") != nullptr) {
+    } else if (has("ramp") || has("from") || has("to")) {
       check_keys(stimulus, {"from", "to", "sensor", "channel", "ramp"});
       read_ramp(stimulus);
     } else {
@@ -181,42 +215,44 @@ private:
     }
   }
 
-  void read_reading(json_t* stimulus) {
-    const auto channel = channel_of(stimulus);
-    json_t* const at = need(stimulus, "at");
-    json_t* const value = need(stimulus, "value");
-    const std::uint64_t at_us = at_key("at", [&] { return time(at); });
-    if (channel) add(at_us, *channel, at_key("value", [&] { return reading(value, *channel); }));
+  void read_reading(const json::Value& stimulus) {
+    const FoundChannel channel = channel_of(stimulus);
+    const std::uint64_t at = time(need(stimulus, "at"));
+    const json::Value& value = need(stimulus, "value");
+    if (channel.read)
+      add(at, *channel.read, reading(value, *channel.read));
+    else
+      check_unread(value, channel.unit);
   }
 
-  void read_ramp(json_t* stimulus) {
-    const auto channel = channel_of(stimulus);
-    json_t* const from_value = need(stimulus, "from");
-    json_t* const to_value = need(stimulus, "to");
-    json_t* const ramp = need(stimulus, "ramp");
-    const std::uint64_t from = at_key("from", [&] { return time(from_value); });
-    const std::uint64_t to = at_key("to", [&] { return time(to_value); });
-    if (to <= from) fail(line_of_key("to"), "the ramp ends before it starts");
-    if (json_array_size(ramp) != 2) {
-      fail(line_of_key("ramp"), "`ramp` is [first reading, last reading]");
+  void read_ramp(const json::Value& stimulus) {
+    const FoundChannel channel = channel_of(stimulus);
+    const json::Value& end = need(stimulus, "to");
+    const json::Value& ramp = need(stimulus, "ramp");
+    const std::uint64_t from = time(need(stimulus, "from"));
+    const std::uint64_t to = time(end);
+    if (to <= from) fail(end.span, "the ramp ends before it starts");
+    if (ramp.items.size() != 2) fail(ramp.span, "`ramp` is [first reading, last reading]");
+    if (!channel.read) {
+      for (const json::Value& value : ramp.items)
+        check_unread(value, channel.unit);
+      return;
     }
-    if (!channel) return;
-    const auto end = [&](std::size_t which) {
-      return at_key("ramp", [&] { return reading(json_array_get(ramp, which), *channel); });
-    };
-    const vm::Value first = end(0), last = end(1);
-    if (first != last && image_.channels[*channel].label_count > 0)
-      fail(line_of_key("ramp"), fmt::format("{} has words, and nothing lies between two words: "
-                                            "write a stimulus with `at` and `value` for each",
-                                            image_.string(image_.channels[*channel].name)));
-    add_ramp(from, to, *channel, first, last);
+    const vm::Value first = reading(ramp.items[0], *channel.read);
+    const vm::Value last = reading(ramp.items[1], *channel.read);
+    const vm::Channel& record = image_.channels[*channel.read];
+    if (first != last && record.label_count > 0)
+      fail(ramp.span, fmt::format("{} has words, and nothing lies between two words: "
+                                  "write a stimulus with `at` and `value` for each",
+                                  image_.string(record.name)));
+    add_ramp(from, to, *channel.read, first, last);
   }
 
   // ---- recordings of sound
 
-  std::uint64_t begin_of(json_t* recording) const {
-    json_t* const at = json_object_get(recording, "at");
-    return at == nullptr ? 0 : at_key("at", [&] { return time(at); });
+  std::uint64_t begin_of(const json::Value& recording) const {
+    const json::Value* const at = json::find(recording, "at");
+    return at == nullptr ? 0 : time(*at);
   }
 
   std::string beside(std::string_view name) const {
@@ -238,23 +274,25 @@ private:
   }
 
   // The channels of a microphone that the program, or an algorithm that it uses, reads.
-  void read_sound(json_t* stimulus) {
-    const std::string_view sensor = need_string(stimulus, "sensor");
-    const std::string file = beside(need_string(stimulus, "sound"));
+  void read_sound(const json::Value& stimulus) {
+    const json::Value& sensor = need_string(stimulus, "sensor");
+    const json::Value& sound = need_string(stimulus, "sound");
     const std::uint64_t begin = begin_of(stimulus);
-    const std::vector<SoundBlock> blocks = named_by("sound", [&] { return hear_file(file); });
+    const std::vector<SoundBlock> blocks =
+        named_by(sound, [&] { return hear_file(beside(sound.text)); });
     bool is_read = false;
     for (std::size_t part = 0; part < kSoundChannels.size(); ++part) {
-      if (part >= vm::kFirstOfSpectrum && !knows(sensor, kSoundChannels[part])) continue;
-      const auto channel = at_key(
-          "sensor", [&] { return find_read_channel(program_, sensor, kSoundChannels[part]); });
+      if (part >= vm::kFirstOfSpectrum && !knows(sensor.text, kSoundChannels[part])) continue;
+      const auto channel = in(sensor, [&] {
+        return find_read_channel(program_, sensor.text, kSoundChannels[part]).read;
+      });
       std::uint64_t at = begin;
       for (const SoundBlock& block : blocks)
         if (channel) add(at += drivers::kEarPeriodMs * std::uint64_t{1000}, *channel, block[part]);
       if (channel) end_at(at + drivers::kEarPeriodMs * std::uint64_t{1000}, *channel);
       is_read = is_read || channel;
     }
-    if (!is_read) note(file_, line_of_key("sensor"), std::string(sensor));
+    if (!is_read) note(file_, line_of(sensor.span), sensor.text);
   }
 
   // ---- recordings in CSV
@@ -264,13 +302,13 @@ private:
     std::string unit;                     // of bare numbers
   };
 
-  void read_recording(json_t* stimulus) {
-    const std::string_view name = need_string(stimulus, "csv");
-    const bool has_sensor = json_object_get(stimulus, "sensor") != nullptr;
-    const std::string_view sensor = has_sensor ? need_string(stimulus, "sensor") : "";
+  void read_recording(const json::Value& stimulus) {
+    const json::Value& name = need_string(stimulus, "csv");
+    const bool has_sensor = json::find(stimulus, "sensor") != nullptr;
+    const std::string sensor = has_sensor ? need_string(stimulus, "sensor").text : "";
     const std::uint64_t begin = begin_of(stimulus);
-    const std::string file = beside(name);
-    const CsvTable table = named_by("csv", [&] { return read_csv(file); });
+    const std::string file = beside(name.text);
+    const CsvTable table = named_by(name, [&] { return read_csv(file); });
     std::size_t time_column = table.columns.cells.size();
     const std::vector<Column> columns = read_columns(file, table, sensor, time_column);
     for (const CsvRow& row : table.rows)
@@ -320,8 +358,8 @@ private:
   Column read_column(const std::string& file, std::size_t line, std::string_view sensor,
                      const std::string& name, const std::string& unit) {
     try {
-      const auto channel = sensor.empty() ? find_read_channel(program_, name, "")
-                                          : find_read_channel(program_, sensor, name);
+      const auto channel = sensor.empty() ? find_read_channel(program_, name, "").read
+                                          : find_read_channel(program_, sensor, name).read;
       if (!channel) note(file, line, sensor.empty() ? name : fmt::format("{} {}", sensor, name));
       const bool own = unit.empty() && channel;
       return {channel, own ? std::string(unit_of(program_, *channel)) : unit};
@@ -382,7 +420,7 @@ private:
 
   void add(std::uint64_t at, std::uint8_t channel, vm::Value value) {
     if (scenario_.stimuli.size() == kMaxStimuli) {
-      fail(line_of(text_, element_.begin), "the scenario has more than a million readings");
+      fail(stimulus_, "the scenario has more than a million readings");
     }
     const vm::Channel& range = image_.channels[channel];
     if (value < range.min || value > range.max) note_range(channel, value);
@@ -400,16 +438,16 @@ private:
     scenario_.notes.push_back(fmt::format(
         "{}:{}: note: {} is out of the range of {} {}, {} to {}: the robot reads {}",
         in_recording_ == nullptr ? file_ : in_recording_->file,
-        in_recording_ == nullptr ? line_of(text_, element_.begin) : in_recording_->cells.line,
-        text(value), image_.string(image_.sensors[range.sensor].name), image_.string(range.name),
+        in_recording_ == nullptr ? line_of(stimulus_) : in_recording_->cells.line, text(value),
+        image_.string(image_.sensors[range.sensor].name), image_.string(range.name),
         text(range.min), text(range.max), text(std::clamp(value, range.min, range.max))));
   }
 
   const std::string& file_;
-  std::string text_;
+  compiler::SourceMap sources_;
   const Program& program_;
   const vm::Image& image_;
-  TextRange element_;                    // the current stimulus
+  Span stimulus_;                        // the current one
   const Row* in_recording_ = nullptr;    // the current row, while reading one
   std::set<std::uint8_t> out_of_range_;  // channels with a note
   std::set<std::string> unread_;         // channels with a note
@@ -417,19 +455,12 @@ private:
 };
 
 Scenario ScenarioReader::read() {
-  json_error_t error{};
-  const std::unique_ptr<json_t, FreeJson> root(
-      json_loadb(text_.data(), text_.size(), JSON_REJECT_DUPLICATES, &error));
-  if (!root)
-    fail(static_cast<std::size_t>(std::max(error.line, 1)),
-         fmt::format("this is not JSON, at column {}: {}", error.column, error.text));
-  element_ = {0, text_.size()};
-  if (!json_is_object(root.get())) fail(1, "a scenario is an object: {\"stimuli\": […]}");
-  check_keys(root.get(), {"$schema", "duration", "stimuli"});
-  if (json_t* const duration = json_object_get(root.get(), "duration")) {
-    scenario_.duration_us = at_key("duration", [&] { return time(duration); });
-  }
-  read_stimuli(json_object_get(root.get(), "stimuli"));
+  const json::Value root = parse();
+  if (root.kind != json::Kind::object) fail({}, "a scenario is an object: {\"stimuli\": […]}");
+  check_keys(root, {"$schema", "duration", "stimuli"});
+  if (const json::Value* const duration = json::find(root, "duration"))
+    scenario_.duration_us = time(*duration);
+  if (const json::Value* const stimuli = json::find(root, "stimuli")) read_stimuli(*stimuli);
   compiler::sort_stably(scenario_.stimuli, {}, &Stimulus::at_us);
   return std::move(scenario_);
 }

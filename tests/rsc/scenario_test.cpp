@@ -95,14 +95,16 @@ TEST_CASE("a ramp over all values does not overflow, and one of too many reading
 TEST_CASE("a wrong scenario gets one message with its line") {
   using Catch::Contains;
   using Catch::StartsWith;
-  CHECK_THAT(mistake("{\"stimuli\": [\n{]}"),
-             StartsWith("visit.json:2: this is not JSON, at column 2: "));
+  CHECK_THAT(
+      mistake("{\"stimuli\": [\n{]}"),
+      StartsWith("visit.json:2: an object ends with `}`, not with `]`; line 2: opened here"));
   CHECK_THAT(mistake("[]"), StartsWith("visit.json:1: a scenario is an object"));
   CHECK_THAT(
       mistake("{\n\"durration\": \"3s\"}"),
       StartsWith("visit.json:2: there is no key `durration` here; did you mean `duration`?"));
   CHECK_THAT(mistake("{\n\n\"duration\": 3}"), StartsWith("visit.json:3: a time is a string"));
-  CHECK_THAT(mistake("{\"duration\": \"1s\", \"duration\": \"2s\"}"), Contains("duplicate"));
+  CHECK_THAT(mistake("{\"duration\": \"1s\", \"duration\": \"2s\"}"),
+             Contains("the key `duration` is given twice"));
   CHECK_THAT(mistake("{\"stimuli\": 3}"), Contains("not an array"));
 
   const auto stimulus = [](const std::string& text) {
@@ -114,7 +116,7 @@ TEST_CASE("a wrong scenario gets one message with its line") {
              StartsWith("visit.json:3: there is no sensor `tuoch`; did you mean `touch`?"));
   CHECK_THAT(
       stimulus("{\"at\": \"1s\", \"sensor\": \"touch\",\n\"channel\": \"LEVL\", \"value\": 1}"),
-      StartsWith("visit.json:4: there is no channel of touch `LEVL`; did you mean `LEVEL`?"));
+      StartsWith("visit.json:4: touch has no channel `LEVL`; did you mean `LEVEL`?"));
   CHECK_THAT(stimulus("{\"at\": \"1s\", \"sensor\": \"proximity\", \"value\": 1}"),
              Contains("several channels") && Contains("DISTANCE, NOISE"));
   CHECK_THAT(stimulus("{\"sensor\": \"touch\", \"value\": 1}"), Contains("no `at`"));
@@ -136,6 +138,55 @@ TEST_CASE("a wrong scenario gets one message with its line") {
              Contains("did you mean `value`?"));
 }
 
+TEST_CASE("text that is not JSON is explained as in robot.json") {
+  using Catch::StartsWith;
+  CHECK_THAT(mistake("{\"stimuli\": [\n{},\n]}"),
+             StartsWith("visit.json:2: there is an extra comma before `]`"));
+  CHECK_THAT(mistake("{\n'stimuli': []}"), StartsWith("visit.json:2: JSON strings need double"));
+  CHECK_THAT(mistake("{\"stimuli\": [\n{\"at\": 1s}]}"),
+             StartsWith("visit.json:2: a number with a unit needs double quotes in JSON; write "
+                        "`\"1s\"`"));
+  CHECK_THAT(mistake("{\"stimuli\": [\n{}\n"), StartsWith("visit.json:3: the file ends too early; "
+                                                          "line 1: this is not closed with `]`"));
+  CHECK_THAT(mistake(""), StartsWith("visit.json:1: there is no JSON in this file"));
+}
+
+TEST_CASE("a key that a stimulus does not have is answered with those that it has") {
+  using Catch::Contains;
+  const auto stimulus = [](const std::string& keys) {
+    return mistake("{\"stimuli\": [{\"sensor\": \"touch\", " + keys + "}]}");
+  };
+  CHECK_THAT(stimulus(R"("time": "1s", "value": 1)"),
+             Contains("there is no key `time` here; did you mean `at`?"));
+  CHECK_THAT(stimulus(R"("from": "1s", "to": "2s", "value": [1, 2])"),
+             Contains("there is no key `value` here; did you mean `ramp`?"));
+  CHECK_THAT(stimulus(R"("when": "1s", "value": 1)"),
+             Contains("there is no key `when` here; known: at, sensor, channel, value"));
+}
+
+TEST_CASE("a misspelt name is told from one that the program does not read") {
+  using Catch::EndsWith;
+  const tool::Program program =
+      test::compile("WHEN touch LEVEL > 3 DO\n  MOVE left_arm TO 0deg\nEND\n");
+  const test::Folder folder;
+  const auto of = [&](const std::string& keys) {
+    return mistake_in("visit.json", [&] {
+      (void)tool::read_scenario(
+          folder.write("visit.json", "{\"stimuli\": [{\"at\": \"1s\", " + keys + "}]}"), program);
+    });
+  };
+  CHECK_THAT(of(R"("sensor": "proximity", "channel": "NOSE", "value": "70dB")"),
+             EndsWith(":1: proximity has no channel `NOSE`; did you mean `NOISE`?"));
+  CHECK_THAT(of(R"("sensor": "proximty", "value": "9cm")"),
+             EndsWith(":1: there is no sensor `proximty`; did you mean `proximity`?"));
+  CHECK_THAT(of(R"("sensor": "door", "value": 1)"),
+             EndsWith(":1: there is no sensor `door`; known: proximity, touch"));
+  CHECK_THAT(
+      of(R"("sensor": "proximity", "channel": "DISTANCE", "value": "9s")"),
+      EndsWith(":1: `9s` is a time, but this is a distance; it takes a number with mm, cm or m"));
+  CHECK(of(R"("sensor": "proximity", "channel": "DISTANCE", "value": "9mm")") == "none");
+}
+
 TEST_CASE("a sensor of which the program reads only one channel still has several") {
   using Catch::Contains;
   const tool::Program program =
@@ -153,7 +204,7 @@ TEST_CASE("a sensor of which the program reads only one channel still has severa
 TEST_CASE("a name that is like no other is answered with those that there are") {
   using Catch::Contains;
   CHECK_THAT(mistake("{\"stimuli\": [{\"at\": \"1s\", \"sensor\": \"door\", \"value\": 1}]}"),
-             Contains("there is no sensor `door`; known: touch, proximity"));
+             Contains("there is no sensor `door`; known: proximity, touch"));
 }
 
 TEST_CASE("braces, commas and quotes in strings do not confuse the lines") {
@@ -180,6 +231,15 @@ TEST_CASE("a recording in CSV: a column of times, and one for each channel") {
   CHECK(scenario.stimuli[5].at_us == 1'500'000);
   CHECK(scenario.stimuli[5].channel == scenario.stimuli[0].channel);
   CHECK(scenario.notes.empty());
+}
+
+TEST_CASE("a recording may have numbers with an exponent, as pandas and R write them") {
+  const tool::Scenario scenario =
+      read_recording("time (s),proximity.DISTANCE (m)\n1e-03,5e-01\n0.30000000000000004,1E0\n");
+  REQUIRE(scenario.stimuli.size() == 2);
+  CHECK(scenario.stimuli[0].at_us == 1'000);
+  CHECK(scenario.stimuli[0].value == 500'000);
+  CHECK(scenario.stimuli[1].at_us == 300'000);
 }
 
 TEST_CASE("a recording of one sensor, that begins later, from a German spreadsheet") {
