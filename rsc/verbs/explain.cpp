@@ -1,24 +1,23 @@
 // rsc explain CODE|FILE [--config FILE] [--format human|json]
-#include <filesystem>
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "compiler/config/robot_reader.hpp"
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/explain/codes.hpp"
 #include "compiler/explain/program_text.hpp"
 #include "compiler/reading.hpp"
-#include "compiler/syntax/parser.hpp"
-#include "rsc/algorithm_modules.hpp"
+#include "compiler/source/ascii.hpp"
 #include "rsc/console.hpp"
 #include "rsc/failure.hpp"
-#include "rsc/files.hpp"
 #include "rsc/json.hpp"
 #include "rsc/program.hpp"
 #include "rsc/verb.hpp"
@@ -34,33 +33,49 @@ struct ExplainOptions {
   Format format = Format::human;
 };
 
-// E0301, w0203: a letter and four digits. A file name would have a dot or a folder.
-bool looks_like_code(const std::string& what) {
-  constexpr std::size_t kLength = 5;
-  return what.size() == kLength && std::string_view("EWNewn").find(what[0]) != std::string::npos &&
-         what.find_first_not_of("0123456789", 1) == std::string::npos;
+// E0301, w0203, also E301 and 0301. A file name would have a dot or a folder.
+bool looks_like_code(std::string_view what) {
+  if (!what.empty() && std::string_view("EWNewn").find(what[0]) != std::string_view::npos)
+    what.remove_prefix(1);
+  return !what.empty() && what.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// Any letter if there is none; zeros in front may be missing.
+bool is_code(std::string_view name, std::string_view word) {
+  const bool has_letter = !compiler::ascii::is_digit(word[0]);
+  if (has_letter && !compiler::ascii::same(name.substr(0, 1), word.substr(0, 1))) return false;
+  const std::string_view digits = word.substr(has_letter ? 1 : 0);
+  const std::string_view number = name.substr(1);
+  return number.ends_with(digits) && number.find_first_not_of('0') >= number.size() - digits.size();
+}
+
+compiler::Code find_code(const std::string& word) {
+  std::vector<std::string> known, meant;
+  for (const explain::CodeText& text : explain::code_texts())
+    known.emplace_back(compiler::code_name(text.code));
+  std::ranges::copy_if(known, std::back_inserter(meant),
+                       [&](const std::string& name) { return is_code(name, word); });
+  if (meant.size() == 1) return *explain::find_code(meant.front());
+  if (const auto near = compiler::nearest(word, known); near && meant.empty())
+    meant.push_back(*near);
+  throw Failure(
+      Exit::usage,
+      fmt::format("there is no diagnostic {}; {}", word,
+                  meant.empty() ? "a code is a letter and four digits, such as E0301"
+                                : fmt::format("did you mean `{}`?", fmt::join(meant, "` or `"))));
 }
 
 void explain_code(const ExplainOptions& options) {
-  const std::optional<compiler::Code> code = explain::find_code(options.what);
-  if (!code) {
-    std::vector<std::string> known;
-    for (const explain::CodeText& text : explain::code_texts())
-      known.emplace_back(compiler::code_name(text.code));
-    const auto near = compiler::nearest(options.what, known);
-    throw Failure(Exit::usage,
-                  fmt::format("there is no diagnostic {}{}", options.what,
-                              near ? fmt::format("; did you mean `{}`?", *near) : std::string()));
-  }
+  const compiler::Code code = find_code(options.what);
   if (options.format == Format::human) {
-    std::cout << explain::code_text(*code);
+    std::cout << explain::code_text(code);
     return;
   }
-  Json report{{"code", compiler::code_name(*code)},
-              {"level", compiler::level_name(compiler::default_level(*code))},
-              {"title", compiler::code_title(*code)}};
+  Json report{{"code", compiler::code_name(code)},
+              {"level", compiler::level_name(compiler::default_level(code))},
+              {"title", compiler::code_title(code)}};
   for (const explain::CodeText& text : explain::code_texts()) {
-    if (text.code != *code) continue;
+    if (text.code != code) continue;
     report["meaning"] = text.meaning;
     report["wrong"] = text.wrong;
     report["mended"] = text.mended;
@@ -68,40 +83,11 @@ void explain_code(const ExplainOptions& options) {
   std::cout << json_text(report) << '\n';
 }
 
-// A program without a configuration: its syntax is checked, not what its names mean.
-compiler::Result read_alone(const std::string& file) {
-  compiler::Result result;
-  compiler::Reading reading;
-  reading.tree = compiler::parse(result.sources, result.sources.add(file, read_text(file)),
-                                 result.diagnostics);
-  const Texts texts;
-  reading.modules = compiler::load_modules(
-      reading.tree, result.sources,
-      [&](const std::string& user, const std::string& name) {
-        return read_module(texts, user, name);
-      },
-      result.diagnostics);
-  result.diagnostics.finish();
-  result.reading = std::make_shared<compiler::Reading>(std::move(reading));
-  return result;
-}
-
-// Empty if the program has none. A configuration named by --config must exist.
-std::string configuration_of(const ExplainOptions& options) {
-  if (!options.config.empty()) return options.config;
-  try {
-    return find_configuration(options.what, "").string();
-  } catch (const Failure&) {
-    return "";
-  }
-}
-
 void explain_file(const ExplainOptions& options) {
   CompileOptions how;
-  how.config = configuration_of(options);
+  how.config = options.config;
   how.judged = Judged::not_at_all;
-  const compiler::Result result =
-      how.config.empty() ? read_alone(options.what) : compile_file(options.what, how);
+  const compiler::Result result = compile_file(options.what, how);
   std::cerr << compiler::render_human(result.diagnostics, result.sources, color_on_stderr());
   if (result.diagnostics.errors() > 0) {
     if (options.format == Format::json)

@@ -540,6 +540,29 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));
 }
 
+TEST_CASE("explain takes a code without its zero or its letter") {
+  for (const char* const word : {"E301", "0301", "e301", "301"})
+    CHECK(test::rsc({"explain", word}).out == test::rsc({"explain", "E0301"}).out);
+  const auto said = [](const char* word) { return test::rsc({"explain", word}).err; };
+  CHECK_THAT(said("0203"), Contains("no diagnostic 0203; did you mean `E0203` or `W0203`?"));
+  CHECK_THAT(said("99999"), Contains("no diagnostic 99999; a code is a letter and four digits"));
+}
+
+TEST_CASE("explain says what is wrong with the configuration, as check does") {
+  const Folder folder;
+  const std::string program = folder.write("robot.rsl", "AT START DO\n  SAY \"Hi\"\nEND\n");
+  const auto as_check = [&](int exit, const char* text) {
+    const Outcome outcome = test::rsc({"explain", program});
+    CHECK(outcome.exit == exit);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(text));
+    CHECK(outcome.err == test::rsc({"check", program}).err);
+  };
+  as_check(3, "no configuration for ");
+  folder.write("robot.json", R"({"duration": "1s", "stimuli": []})");
+  as_check(1, "is a scenario, but its name makes it the configuration of");
+}
+
 // A condition of an experiment may be silence, beside the texts of a LIST.
 TEST_CASE("an empty text is said in no time, and a TEST tells it from other texts") {
   const Folder folder;
