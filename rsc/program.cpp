@@ -49,6 +49,10 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
+std::string program_beside(const std::string& file) {
+  return std::filesystem::path(file).replace_extension(".rsl").string();
+}
+
 // Read as a program, JSON would have errors, and even fixes, that damage it.
 void refuse_json(const std::string& file, const std::string& text) {
   constexpr std::string_view kJson = ".json";
@@ -57,21 +61,32 @@ void refuse_json(const std::string& file, const std::string& text) {
     return;
   FileKind kind = kind_of_text(text);
   if (kind == FileKind::other) kind = FileKind::configuration;
-  const std::string program = file.substr(0, file.size() - kJson.size()) + ".rsl";
-  throw Failure(Exit::program,
-                fmt::format("{} is {}, not a program: name the program{}", file, describe(kind),
-                            kind == FileKind::configuration
-                                ? ", such as " + program + "; both are then checked and mended"
-                                : std::string()));
+  throw Failure(
+      Exit::program,
+      fmt::format("{} is {}, not a program: name the program{}", file, describe(kind),
+                  kind == FileKind::configuration
+                      ? ", such as " + program_beside(file) + "; its configuration is read with it"
+                      : std::string()));
+}
+
+// Its errors as a configuration would be misleading.
+std::string read_configuration(const std::filesystem::path& path, const Texts& texts) {
+  std::string text = texts.read(path);
+  const FileKind kind = kind_of_text(text);
+  if (kind != FileKind::other && kind != FileKind::configuration)
+    throw Failure(Exit::program, fmt::format("{} is {}, not the configuration of a robot",
+                                             path.string(), describe(kind)));
+  return text;
 }
 
 compiler::Result compile(const std::string& file, const CompileOptions& options,
                          const compiler::ModuleReader& modules, const Texts& texts) {
   std::string text = texts.read(file);
+  refuse_image(file, text);
   refuse_json(file, text);
   const std::filesystem::path path = find_configuration(file, options.config, texts);
   compiler::Result result = compiler::compile({file == "-" ? "stdin" : file, std::move(text)},
-                                              {path.string(), texts.read(path)},
+                                              {path.string(), read_configuration(path, texts)},
                                               {.source_lines = options.source_lines,
                                                .optimize = options.optimize,
                                                .seed = options.seed,
@@ -97,6 +112,12 @@ constexpr std::array<std::string_view, policy::kWhose> kWhose = {
     "variables", "algorithms", "image",     "borders"};
 
 }  // namespace
+
+void refuse_image(const std::string& file, std::string_view text) {
+  if (is_image(file, std::as_bytes(std::span(text))))
+    throw Failure(Exit::program, file + " is an image already, not a program: name the program, " +
+                                     "such as " + program_beside(file));
+}
 
 std::optional<compiler::Input> read_module(const Texts& texts, const std::string& user,
                                            const std::string& file) {

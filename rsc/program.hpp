@@ -56,6 +56,9 @@ struct CompileOptions {
 [[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options,
                                             const Texts& texts = Texts());
 
+// Throws Failure (program) if this is an image, which has no text.
+void refuse_image(const std::string& file, std::string_view text);
+
 // On stderr, for a person. `quiet`: only if there is an error.
 void show_diagnostics(const compiler::Result& result, bool quiet = false);
 

@@ -45,6 +45,7 @@ std::optional<std::string> formatted(const std::string& name, const std::string&
 
 bool format_file(const std::string& name, const FormatOptions& options) {
   const std::string text = read_text(name);
+  refuse_image(name, text);
   const std::optional<std::string> result = formatted(name, text);
   if (!result) return false;
   if (*result == text) return true;

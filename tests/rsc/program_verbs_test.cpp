@@ -469,15 +469,34 @@ TEST_CASE("JSON in the place of a program is left alone, and the program is name
   const std::string wiring = "{board: \"microbit-v2\",\n sensors: []}\n";
   const std::string file = robot.write("pet.json", wiring);
   const std::string scenario = robot.write("track.json", R"({"duration": "1s"})");
-  for (const char* const verb : {"check", "fix", "run", "compile"}) {
+  for (const char* const verb : {"check", "fix", "run", "compile", "explain"}) {
     CAPTURE(verb);
     Outcome outcome = test::rsc({verb, file});
     CHECK(outcome.exit == 1);
     CHECK_THAT(outcome.err, Contains("pet.json is the configuration of a robot, not a program: "
                                      "name the program, such as ") &&
-                                Contains("pet.rsl; both are then checked and mended"));
+                                Contains("pet.rsl; its configuration is read with it"));
     CHECK_THAT(test::rsc({verb, scenario}).err,
                Contains("track.json is a scenario, not a program"));
   }
   CHECK(robot.read("pet.json") == wiring);
+  const Outcome outcome = test::rsc({"check", robot.program, "--config", scenario});
+  CHECK(outcome.exit == 1);
+  CHECK_THAT(outcome.err, Contains("track.json is a scenario, not the configuration of a robot") &&
+                              !Contains("error["));
+}
+
+TEST_CASE("an image in the place of a program is called one") {
+  const RobotFolder robot;
+  REQUIRE(test::rsc({"compile", robot.program}).exit == 0);
+  const std::string image = robot.read("robot.rsb");
+  for (const char* const verb : {"check", "fix", "fmt", "test", "explain"}) {
+    const Outcome outcome = test::rsc({verb, robot.path("robot.rsb")});
+    CAPTURE(verb, outcome.err);
+    CHECK(outcome.exit == 1);
+    CHECK_THAT(outcome.err, Contains("robot.rsb is an image already, not a program: name the "
+                                     "program, such as ") &&
+                                Contains("robot.rsl\n") && !Contains("NUL"));
+  }
+  CHECK(robot.read("robot.rsb") == image);
 }
