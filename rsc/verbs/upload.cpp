@@ -1,5 +1,6 @@
 // rsc upload FILE|X.rsb --port P… [--config FILE] [--timeout TIME] [--trial TIME] [--no-confirm] [--replace] [--fresh]
 //            [--anyway] [--take] [--key FILE]
+#include <chrono>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -20,6 +21,8 @@
 
 namespace robosync::tool {
 namespace {
+
+constexpr std::chrono::seconds kLeastTimeout{1};
 
 void show_progress(std::size_t sent, std::size_t total) {
   std::cerr << fmt::format("\r{} of {} bytes", sent, total);
@@ -89,7 +92,7 @@ void add_upload(Options& options) {
   add_compile_options(options, asked->how);
   add_seed_option(options, asked->how.seed);
   add_duration_option(options, "--timeout", asked->timeout,
-                      "give up after this time, even if the board still answers");
+                      "give up after this time, even if the board still answers; at least 1s");
   add_duration_option(options, "--trial", asked->trial,
                       "wait until it has run this long, and say whether the robot keeps it");
   options.flag("--no-confirm", asked->no_confirm,
@@ -103,6 +106,8 @@ void add_upload(Options& options) {
   options.flag("--take", asked->take, "take the line from a host that is uploading");
   add_format_option(options, asked->format);
   options.runs([asked] {
+    if (asked->timeout.value_or(kLeastTimeout) < kLeastTimeout)
+      throw Failure(Exit::usage, "--timeout: a board may need 1s to answer; give it at least that");
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     upload(*asked);
   });

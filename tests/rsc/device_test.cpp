@@ -372,6 +372,16 @@ TEST_CASE("a port without firmware behind it is exit 3") {
   CHECK_THAT(outcome.err, Contains("the board does not answer") && Contains(robot.path("dumb")));
 }
 
+TEST_CASE("a timeout that no board can meet is refused") {
+  const Device device;
+  for (const char* const time : {"0s", "1ms", "999ms"}) {
+    const Outcome outcome = device.run({"upload", device.program, "--timeout", time});
+    CHECK(outcome.exit == 2);
+    CHECK_THAT(outcome.err, Contains("--timeout: a board may need 1s to answer"));
+  }
+  CHECK(device.run({"upload", device.program, "--timeout", "1s"}).exit == 0);
+}
+
 TEST_CASE("a board that falls silent in mid-upload: soon, and says that the old program runs") {
   Device device;
   REQUIRE(device.run({"upload", device.program}).exit == 0);
