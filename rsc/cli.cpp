@@ -8,6 +8,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,11 +48,22 @@ void take_word(const Options::Take& take, const std::string& word) {
   }
 }
 
+// Else a forgotten value would take the next option: --duration --trace x.
+Options::Take unless_option(const CLI::App& app, const std::string& names, const std::string& text,
+                            const Options::Take& take) {
+  return [&app, names, text, take](const std::string& word) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.starts_with("-") && app.get_option_no_throw(name) != nullptr)
+      throw CLI::ValidationError(
+          fmt::format("{} needs {} after it", names.substr(names.rfind(',') + 1), text));
+    take_word(take, word);
+  };
+}
+
 CLI::Option* add_named(CLI::App& app, const std::string& names, const std::string& text,
                        const Options::Take& take, const std::string& description) {
   return app
-      .add_option_function<std::string>(
-          names, [take](const std::string& word) { take_word(take, word); }, description)
+      .add_option_function<std::string>(names, unless_option(app, names, text, take), description)
       ->type_name(text)
       ->option_text(text);
 }
@@ -76,10 +88,10 @@ void Options::option(const std::string& names, const std::string& text, const Ta
 
 void Options::options(const std::string& names, const std::string& text, const Take& take,
                       const std::string& description, Need need) {
-  const auto take_all = [take](const std::vector<std::string>& words) {
-    for (const std::string& word : words)
-      take_word(take, word);
-  };
+  const auto take_all =
+      [take = unless_option(app_, names, text, take)](const std::vector<std::string>& words) {
+        std::ranges::for_each(words, take);
+      };
   app_.add_option_function<std::vector<std::string>>(names, take_all, description)
       ->required(need == Need::required)
       ->allow_extra_args(false)
@@ -175,13 +187,35 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
       for (const std::string& name : option->get_snames())
         known.push_back("-" + name);
     }
-    message = word.starts_with("-") ? fmt::format("there is no option `{}`{}", word,
-                                                  instead_of_option(at.get_name(), word, known))
-                                    : fmt::format("`{}` is one argument too many", word);
+    if (word.starts_with("-"))
+      message = fmt::format("there is no option `{}`{}", word,
+                            instead_of_option(at.get_name(), word, known));
+    else if (word.starts_with("./-"))
+      message = fmt::format(
+          "`{}` is one argument too many; after `--` all are names of files, "
+          "so options go before it",
+          word.substr(2));
+    else
+      message = fmt::format("`{}` is one argument too many", word);
   }
   if (const std::string said = mismatch(error); !said.empty()) message = said;
   const std::string help = &at == &app ? "rsc help" : "rsc help " + at.get_name();
   return fmt::format("{}\n`{}` shows how it is used", message, help);
+}
+
+// After `--` all are names of files, also `-a.rsl`. In the order that CLI11 takes them.
+std::vector<std::string> reversed_words(std::span<const char* const> arguments) {
+  std::vector<std::string> words;
+  bool only_files = false;
+  for (const std::string_view word : arguments.subspan(1)) {
+    const bool like_option = word.size() > 1 && word.starts_with("-");
+    if (!only_files && word == "--")
+      only_files = true;
+    else
+      words.push_back(std::string(only_files && like_option ? "./" : "") + std::string(word));
+  }
+  std::ranges::reverse(words);
+  return words;
 }
 
 void parse(CLI::App& app, int count, const char* const* arguments) {
@@ -195,7 +229,7 @@ void parse(CLI::App& app, int count, const char* const* arguments) {
                               first, instead_of_verb(first)));
   if (!first.starts_with("-") && find_verb(first) == nullptr) unknown_verb(first);
   try {
-    app.parse(count, const_cast<char**>(arguments));  // CLI11 does not modify them
+    app.parse(reversed_words({arguments, static_cast<std::size_t>(count)}));
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
     std::cout << (chosen.empty() ? app.help() : chosen.front()->help(app.get_name()));

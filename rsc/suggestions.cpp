@@ -120,6 +120,8 @@ std::string instead_of_verb(std::string_view word) {
 
 std::string instead_of_option(std::string_view verb, std::string_view word,
                               const std::vector<std::string>& known) {
+  if (word.find('.') < word.find('='))
+    return fmt::format("; a file of this name is written ./{}", word);
   word = word.substr(0, word.find('='));
   for (const ForeignOption& foreign : kForeignOptions)
     if (foreign.word == word && fits(foreign, verb, known))

@@ -174,6 +174,40 @@ TEST_CASE("an option that does not know a word says what it knows") {
              Contains("--seed may be given only once"));
 }
 
+TEST_CASE("an option that lacks its value does not take the next option") {
+  for (const auto& [option, value] :
+       {std::pair{"--duration", "TIME"}, {"--config", "FILE"}, {"--allow", "CODE"}}) {
+    for (const char* const next : {"--trace", "--html=x.html", "-O"}) {
+      const Outcome outcome = test::rsc({"run", option, next, "x", "robot.rsl"});
+      CAPTURE(option, next, outcome.err);
+      CHECK(outcome.exit == 2);
+      CHECK_THAT(outcome.err, Contains(std::string(option) + " needs " + value + " after it"));
+    }
+  }
+}
+
+TEST_CASE("names of files that begin with -") {
+  const InFolder here;
+  here.write("robot.json", test::kRobot);
+  here.write("robot.rsl", test::kProgram);
+  here.write("-dash.rsl", test::kProgram);
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"check", "--", "-dash.rsl"},
+                                             {"check", "robot.rsl", "--", "-dash.rsl"},
+                                             {"compile", "-o", "x.rsb", "--", "-dash.rsl"},
+                                             {"check", "./-dash.rsl"}}) {
+    const Outcome outcome = test::rsc(arguments);
+    CAPTURE(arguments, outcome.err);
+    CHECK(outcome.exit == 0);
+  }
+  CHECK_THAT(
+      test::rsc({"check", "-dash.rsl"}).err,
+      Contains("there is no option `-dash.rsl`; a file of this name is written ./-dash.rsl"));
+  CHECK_THAT(test::rsc({"compile", "--", "-dash.rsl", "-o", "x.rsb"}).err,
+             Contains("`-o` is one argument too many; after `--` all are names of files, so "
+                      "options go before it"));
+}
+
 TEST_CASE("an option in front of the verb is told where it belongs") {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"--format", "json", "check", "robot.rsl"}, {"-v"}}) {
