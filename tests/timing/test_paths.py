@@ -321,7 +321,7 @@ class Sampling(unittest.TestCase):
 
     def test_an_input_pin(self):
         """Another channel of it. The last pin is the one that takes longest."""
-        switch = {"type": "GPIO", "pin": 43, "device": "switch", "channels": {"A": {}, "B": {}}}
+        switch = {"type": "GPIO", "pin": 43, "device": "switch", "channels": {"A": {"input": 0}, "B": {"input": 0}}}
         measured = self.worst(switch, "A IS closed", "B IS closed") - self.worst(switch, "A IS closed")
         said = paths.samples()["digital_input"]
         print(f"\n  an input pin: {measured}, said {said}")
