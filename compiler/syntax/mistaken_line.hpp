@@ -108,8 +108,8 @@ protected:
   }
 
   // The index after the last token of the statement.
-  std::size_t statement_end() const {
-    std::size_t at = stop_;
+  std::size_t statement_end() const { return statement_end_from(stop_); }
+  std::size_t statement_end_from(std::size_t at) const {
     while (at < end_ && !is_one_of(tokens_[at].kind, {Kinds::DO, Kinds::ELSE, Kinds::ELSE_IF,
                                                       Kinds::END, Kinds::THEN, Kinds::OPTION}))
       ++at;
@@ -174,6 +174,10 @@ protected:
   }
 
   // ---- how the grammar can continue
+
+  Tokens::const_iterator at(std::size_t place) const {
+    return tokens_.begin() + static_cast<std::ptrdiff_t>(place);
+  }
 
   static Edit change(std::size_t at, std::size_t removed, Tokens inserted = {}) {
     Edit edit;

@@ -29,10 +29,15 @@ bool is_with_dash(const Tokens& tokens, std::size_t at) {
          tokens[at + 1].span.end == tokens[at + 2].span.begin;
 }
 
-// How many words stand next to each other from `at` on.
-std::size_t words_at(const Tokens& tokens, std::size_t at) {
+// How many words stand next to each other from `at` on; with `of`, also those of `number of visitors`.
+std::size_t words_at(const Tokens& tokens, std::size_t at, bool of) {
+  const auto is = [&](std::size_t place, TokenKind kind) {
+    return place < tokens.size() && tokens[place].kind == kind;
+  };
   std::size_t words = 0;
-  while (words < kMostWords && at + words < tokens.size() && tokens[at + words].kind == Kinds::NAME)
+  while (words < kMostWords &&
+         (is(at + words, Kinds::NAME) ||
+          (of && words > 0 && is(at + words, Kinds::OF) && is(at + words + 1, Kinds::NAME))))
     ++words;
   return words;
 }
@@ -46,7 +51,8 @@ Span whole(const Tokens& tokens, std::size_t at, std::size_t count) {
 std::size_t declared_at(const Tokens& tokens, std::size_t at) {
   if (!starts_line(tokens, at)) return 0;
   const bool dash = is_with_dash(tokens, at + 1);
-  const std::size_t count = dash ? 3 : words_at(tokens, at + 1), behind = at + 1 + count;
+  const bool of = is_one_of(tokens[at].kind, {Kinds::REMEMBER, Kinds::LET});
+  const std::size_t count = dash ? 3 : words_at(tokens, at + 1, of), behind = at + 1 + count;
   if (count < 2 || behind >= tokens.size() || (!dash && tokens[at].kind == Kinds::DEFINE)) return 0;
   return declares(tokens[at].kind, tokens[behind].kind) ? count : 0;
 }
@@ -58,7 +64,7 @@ std::size_t used_at(const Tokens& tokens, std::size_t at, const SourceFile& sour
     return names.contains(source.text(whole(tokens, at, count)));
   };
   if (is_with_dash(tokens, at)) return is_one(3) ? 3 : 0;
-  for (std::size_t count = words_at(tokens, at); count >= 2; --count)
+  for (std::size_t count = words_at(tokens, at, true); count >= 2; --count)
     if (is_one(count)) return count;
   return 0;
 }
