@@ -38,6 +38,21 @@ bool names_times(std::string_view line) {
   return false;
 }
 
+struct Beginning {
+  std::string_view text;
+  FileKind kind;
+};
+// The words of a key are those of device/owner_key.cpp, those of a file of words stand in companion/words_file.cpp.
+constexpr std::array kBeginnings = {Beginning{"robosync owner's key", FileKind::key},
+                                    Beginning{"robosync words ", FileKind::words},
+                                    Beginning{"\x7F"
+                                              "ELF",
+                                              FileKind::library},
+                                    Beginning{"RIFF", FileKind::sound},
+                                    Beginning{"FORM", FileKind::sound},
+                                    Beginning{"fLaC", FileKind::sound},
+                                    Beginning{"OggS", FileKind::sound}};
+
 struct Mark {
   std::string_view key;
   FileKind kind;
@@ -51,18 +66,22 @@ constexpr std::array kMarks = {
 }  // namespace
 
 FileKind kind_of_text(std::string_view text) {
+  for (const Beginning& one : kBeginnings)
+    if (text.starts_with(one.text)) return one.kind;
   const std::string_view first = text.substr(0, text.find('\n'));
   const std::size_t begin = text.find_first_not_of(kSpace);
   if (begin == std::string_view::npos) return FileKind::other;
   if (text[begin] != '{') return names_times(first) ? FileKind::recording : FileKind::other;
-  if (has_key(first, "event")) return FileKind::trace;
+  if (has_key(first, "event")) return has_key(first, "hex") ? FileKind::replay : FileKind::trace;
   const auto* const mark =
       std::ranges::find_if(kMarks, [&](const Mark& one) { return has_key(text, one.key); });
   return mark == kMarks.end() ? FileKind::other : mark->kind;
 }
 
 FileKind kind_of_file(const std::filesystem::path& path) {
-  if (compiler::ascii::same(path.extension().string(), ".rsl")) return FileKind::program;
+  const std::string extension = path.extension().string();
+  if (compiler::ascii::same(extension, ".rsl")) return FileKind::program;
+  if (extension == ".c" || extension == ".h") return FileKind::source;
   std::ifstream file(path, std::ios::binary);
   std::string text(kBeginning, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -84,8 +103,20 @@ std::string_view describe(FileKind kind) {
       return "a file of kept numbers";
     case FileKind::trace:
       return "a trace";
+    case FileKind::replay:
+      return "a recording for rsc replay";
     case FileKind::perfetto:
       return "a trace for Perfetto";
+    case FileKind::key:
+      return "the key of a robot's owner";
+    case FileKind::words:
+      return "a file of taught words";
+    case FileKind::source:
+      return "a source in C";
+    case FileKind::library:
+      return "a compiled module or program";
+    case FileKind::sound:
+      return "a sound";
     case FileKind::other:
       break;
   }

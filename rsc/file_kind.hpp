@@ -15,11 +15,17 @@ enum class FileKind : std::uint8_t {
   recording,  // CSV, with a column of times
   kept,
   trace,
-  perfetto
+  replay,  // a trace with its program, as --record writes it
+  perfetto,
+  key,      // of a robot's owner
+  words,    // that were taught
+  source,   // of a module
+  library,  // a compiled module
+  sound
 };
 
-// The text may be incomplete or wrong: its beginning is enough. Never `program`, which only the file name
-// tells.
+// The text may be incomplete or wrong: its beginning is enough. Never `program` or `source`, which only
+// the file name tells.
 [[nodiscard]] FileKind kind_of_text(std::string_view text);
 // `other` when it cannot be read.
 [[nodiscard]] FileKind kind_of_file(const std::filesystem::path& path);

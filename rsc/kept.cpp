@@ -63,7 +63,7 @@ Kept::Kept(const Program& program, const std::string& name, const std::string& f
   if (std::filesystem::exists(file_))
     read();
   else
-    check_output(file_, program.files());
+    check_output({file_}, program.files());
 }
 
 void Kept::read() {

@@ -16,7 +16,6 @@
 #include <unistd.h>
 
 #include "rsc/failure.hpp"
-#include "rsc/file_kind.hpp"
 
 namespace robosync::tool {
 namespace fs = std::filesystem;
@@ -153,8 +152,8 @@ void refuse_name_of_configuration(const fs::path& path) {
   if (fs::exists(program, error)) refuse(path, fmt::format(kWhy, program.string()));
 }
 
-// What rsc writes may be overwritten.
-bool is_written_by_people(FileKind kind) {
+// What rsc makes again at any time may be overwritten.
+bool matters(FileKind kind) {
   return kind != FileKind::other && kind != FileKind::trace && kind != FileKind::perfetto;
 }
 
@@ -166,18 +165,20 @@ fs::path whole_name(const std::string& path) {
 
 }  // namespace
 
-void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (paths[i].empty()) continue;
-    check_output(paths[i], inputs);
+void check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::string& path = outputs[i].path;
+    if (path.empty()) continue;
+    check_output(outputs[i], inputs);
     for (std::size_t other = 0; other < i; ++other)
-      if (!paths[other].empty() && whole_name(paths[other]) == whole_name(paths[i]) &&
-          !is_written_through(paths[i], facts_of(paths[i])))
-        refuse(paths[i], "is given for two outputs");
+      if (!outputs[other].path.empty() && whole_name(outputs[other].path) == whole_name(path) &&
+          !is_written_through(path, facts_of(path)))
+        refuse(path, "is given for two outputs");
   }
 }
 
-void check_output(const fs::path& path, const std::vector<std::string>& inputs) {
+void check_output(const Output& output, const std::vector<std::string>& inputs) {
+  const fs::path path = output.path;
   const auto facts = facts_of(path);
   if (facts && S_ISDIR(facts->st_mode)) fail(path, EISDIR);
   if (facts && !S_ISREG(facts->st_mode)) return;
@@ -197,7 +198,7 @@ void check_output(const fs::path& path, const std::vector<std::string>& inputs) 
                                     path.string(), input));
   }
   refuse_name_of_configuration(path);
-  if (const FileKind kind = kind_of_file(path); is_written_by_people(kind))
+  if (const FileKind kind = kind_of_file(path); matters(kind) && kind != output.again)
     refuse(path, fmt::format("already exists, and is {}", describe(kind)));
 }
 

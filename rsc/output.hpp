@@ -7,14 +7,22 @@
 #include <string>
 #include <vector>
 
+#include "rsc/file_kind.hpp"
+
 namespace robosync::tool {
 
-// Throws Failure if `path` is one of `inputs` (usage), even through a link; exists and was written by a person, such
+struct Output {
+  std::string path;  // empty: not asked for
+  FileKind again =
+      FileKind::other;  // what may be replaced although it matters: an older output of this kind
+};
+
+// Throws Failure if the path is one of `inputs` (usage), even through a link; exists and is a file that matters, such
 // as a scenario (usage); would be taken for the configuration of a program because of its name (usage); or is a
 // directory (outside). Inputs that do not exist are ignored.
-void check_output(const std::filesystem::path& path, const std::vector<std::string>& inputs);
-// The same for all paths that are not empty, and if two of them are the same file (usage).
-void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
+void check_output(const Output& output, const std::vector<std::string>& inputs);
+// The same for several, and if two of them are the same file (usage).
+void check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs);
 
 // `path` is this program's stdout, so nothing else should be printed there.
 [[nodiscard]] bool is_stdout(const std::filesystem::path& path);

@@ -80,7 +80,8 @@ void run(const CompanionOptions& options) {
   }
   if (options.port.empty()) throw Failure(Exit::usage, "name the --port of the robot, or --list");
   std::vector<compiler::SensorConfig> algorithms = algorithms_of(options.config);
-  if (!options.record.empty()) check_output(options.record, {options.config});
+  check_outputs({{options.record, FileKind::replay}, {options.sources.preview}},
+                {options.config, options.sources.camera, options.sources.microphone});
   check_source(options.sources.camera);
   check_source(options.sources.microphone);
   check_programs(algorithms, options.sources.programs);

@@ -69,7 +69,7 @@ void compile(const OutputOptions& options) {
                                              summary(result.diagnostics)));
   }
   const Program program(std::move(result.image), options.file, memory_of(result.board));
-  check_output(output, names_of(result.sources));
+  check_output({output}, names_of(result.sources));
   // If the image goes to stdout, the report must not.
   std::ostream& out = is_stdout(output) ? std::cerr : std::cout;
   write_output(output, program.bytes());

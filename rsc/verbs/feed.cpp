@@ -279,7 +279,7 @@ void check_what_is_asked(const FeedOptions& options) {
   }
   if (options.record.empty()) return;
   if (!options.watch) throw Failure(Exit::usage, "--record records what --watch TIME shows");
-  check_output(options.record, {options.scenario, options.upload});
+  check_output({options.record, FileKind::replay}, {options.scenario, options.upload});
 }
 
 UploadOptions how_to_upload(const FeedOptions& options) {

@@ -144,7 +144,8 @@ void run(const RunOptions& options) {
   show_notes(scenario);
 
   Kept kept(program, options.file, options.kept, options.fresh);
-  check_outputs({options.trace, options.record, options.html}, inputs_of(options, program, kept));
+  check_outputs({{options.trace}, {options.record, FileKind::replay}, {options.html}},
+                inputs_of(options, program, kept));
 
   std::vector<std::byte> uploaded = without_source_lines(program);  // as on the board
   kept.put_into(uploaded);

@@ -37,7 +37,7 @@ void convert(const TraceOptions& options) {
         fmt::format("`rsc trace {}` does not exist; write `rsc trace convert`", options.what));
   if (options.to == nullptr)
     throw Failure(Exit::usage, "name the format: --to perfetto, csv or vcd");
-  if (!options.output.empty()) check_output(options.output, {options.file});
+  if (!options.output.empty()) check_output({options.output}, {options.file});
   const std::string text = options.to->convert(options.file);
   if (options.output.empty())
     std::cout << text;

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "companion/words_file.hpp"
 #include "rsc/failure.hpp"
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
@@ -100,7 +101,14 @@ TEST_CASE("what a person has written is no output, whatever verb is asked") {
       {"visit.csv", "\xEF\xBB\xBFtime (s),touch.LEVEL\n0,1\n", "a recording in CSV"},
       {"old.kept.json", R"({"kept": {"visits": "4"}})", "a file of kept numbers"},
       {"old.json", R"({"actuators": []})", "the configuration of a robot"},
-      {"old.rsl", "# mine\n", "a program"}};
+      {"old.rsl", "# mine\n", "a program"},
+      {"pet.words", companion::write_words({}), "a file of taught words"},
+      {"heart.c", "", "a source in C"},
+      {"heart.so",
+       "\x7F"
+       "ELF\2",
+       "a compiled module"},
+      {"hello.wav", "RIFF", "a sound"}};
   for (const auto& [name, text, what] : kept) {
     const std::string file = robot.write(name, text);
     refuses(robot, {"trace", "convert", trace, "--to", "perfetto", "-o", file}, 2, what);
@@ -114,6 +122,42 @@ TEST_CASE("what a person has written is no output, whatever verb is asked") {
       CHECK(test::rsc({"trace", "convert", trace, "--to", to, "-o", robot.path(name)}).exit == 0);
   for (int i = 0; i < 2; ++i)
     CHECK(test::rsc({"run", robot.program, "--trace", robot.path("b.json")}).exit == 0);
+}
+
+TEST_CASE("the key of an owner is no output") {
+  const RobotFolder robot;
+  REQUIRE(test::rsc({"keygen", "--key", robot.path("key")}).exit == 0);
+  const std::string key = robot.read("key");
+  for (const char* const option : {"--trace", "--record", "--html"})
+    refuses(robot, {"run", robot.program, option, robot.path("key")}, 2,
+            "already exists, and is the key of a robot's owner; nothing was written");
+  CHECK(robot.read("key") == key);
+}
+
+TEST_CASE("a recording is replaced only by a recording") {
+  const RobotFolder robot;
+  const std::string day = robot.path("day.jsonl");
+  for (int i = 0; i < 2; ++i)
+    REQUIRE(test::rsc({"run", robot.program, "--record", day}).exit == 0);
+  const std::string recorded = robot.read("day.jsonl");
+  for (const char* const option : {"--trace", "--html"})
+    refuses(robot, {"run", robot.program, option, day}, 2, "is a recording for rsc replay");
+  refuses(robot, {"compile", robot.program, "-o", day}, 2, "is a recording for rsc replay");
+  CHECK(robot.read("day.jsonl") == recorded);
+}
+
+TEST_CASE("the picture of a companion replaces nothing that matters") {
+  const RobotFolder robot;
+  robot.write("robot.json", R"({"algorithms": [{"name": "people", "module": "face_detect"}]})");
+  const std::string film = robot.write("film.avi", "film");
+  const auto call = [&](const std::string& preview) {
+    refuses(robot,
+            {"companion", "--port", "unix:none", "--config", robot.path("robot.json"), "--camera",
+             film, "--preview", preview},
+            2, "nothing was written");
+  };
+  call(film);
+  call(robot.program);
 }
 
 TEST_CASE("nothing is written where it would be taken for a configuration") {
