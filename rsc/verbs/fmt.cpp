@@ -43,10 +43,17 @@ std::optional<std::string> formatted(const std::string& name, const std::string&
   return result;
 }
 
-bool format_file(const std::string& name, const FormatOptions& options) {
-  const std::string text = read_text(name);
+// Stdin is written to stdout, for editors, unless it is only checked.
+bool format_file(const std::string& file, const FormatOptions& options) {
+  const bool is_stdin = file == "-";
+  const std::string name = is_stdin ? "<stdin>" : file;
+  const std::string text = read_text(is_stdin ? "/dev/stdin" : file);
   refuse_image(name, text);
   const std::optional<std::string> result = formatted(name, text);
+  if (is_stdin && !options.check) {
+    std::cout << result.value_or(text);
+    return result.has_value();
+  }
   if (!result) return false;
   if (*result == text) return true;
   if (!options.quiet) std::cout << name << '\n';
@@ -54,18 +61,9 @@ bool format_file(const std::string& name, const FormatOptions& options) {
   return !options.check;
 }
 
-// Reads stdin and writes stdout, for editors.
-bool format_stdin() {
-  const std::string text = read_text("/dev/stdin");
-  const std::optional<std::string> result = formatted("<stdin>", text);
-  std::cout << (result ? *result : text);
-  return result.has_value();
-}
-
 void format(const FormatOptions& options) {
   const Exit exit = for_each_file(options.files, [&](const std::string& file) {
-    const bool good = file == "-" ? format_stdin() : format_file(file, options);
-    if (!good) throw Failure(Exit::program, "");
+    if (!format_file(file, options)) throw Failure(Exit::program, "");
   });
   if (exit != Exit::fine) throw Failure(exit, "");
 }

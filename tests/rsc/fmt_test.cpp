@@ -1,6 +1,7 @@
 // rsc fmt: which files it writes, which stay as they are, and how it ends.
 #include <cstdlib>
 #include <filesystem>
+#include <tuple>
 
 #include <catch2/catch.hpp>
 
@@ -84,9 +85,10 @@ TEST_CASE("fmt and fix change the file that a link leads to") {
 
 TEST_CASE("- reads stdin and writes stdout") {
   const Folder folder;
-  const auto piped = [&](const std::string& program) {
-    const std::string command = RSC_BINARY " fmt - < " + folder.write("in.rsl", program) + " > " +
-                                folder.path("out.rsl") + " 2> " + folder.path("said");
+  const auto piped = [&](const std::string& program, const std::string& check = "") {
+    const std::string command = RSC_BINARY " fmt - " + check + " < " +
+                                folder.write("in.rsl", program) + " > " + folder.path("out.rsl") +
+                                " 2> " + folder.path("said");
     return WEXITSTATUS(std::system(command.c_str()));
   };
   CHECK(piped(kPlain) == 0);
@@ -96,4 +98,11 @@ TEST_CASE("- reads stdin and writes stdout") {
   CHECK(piped("WHEN touch LEVEL<\n") == 1);
   CHECK(folder.read("out.rsl") == "WHEN touch LEVEL<\n");
   CHECK_THAT(folder.read("said"), Contains("<stdin>:1:"));
+  for (const auto& [program, exit, out] :
+       {std::tuple{kPlain, 1, "<stdin>\n"}, {kStyled, 0, ""}, {"WHEN touch LEVEL<\n", 1, ""}}) {
+    CHECK(piped(program, "--check") == exit);
+    CHECK(folder.read("out.rsl") == out);
+  }
+  CHECK(piped(kPlain, "--check -q") == 1);
+  CHECK(folder.read("out.rsl").empty());
 }
