@@ -1,4 +1,5 @@
-// See saved_uploads.hpp. Errors in a program and the robot's refusals are printed, and the previous one keeps running.
+// See saved_uploads.hpp. Errors in a program, files that cannot be read and the robot's refusals are printed, and the previous one
+// keeps running: an editor may remove a file for a moment while it saves it.
 #include "rsc/device/saved_uploads.hpp"
 
 #include <iostream>
@@ -14,6 +15,11 @@ bool SavedUploads::work(Session* session) {
   const auto tell = [](const Failure& failure) { std::cerr << "rsc: " << failure.what() << '\n'; };
   try {
     programs_.push_back(load_program(file_, how_));
+  } catch (const Failure& failure) {
+    tell(failure);
+    return true;
+  }
+  try {
     upload_program(*session, programs_.back(), {});
   } catch (const Refused& refusal) {
     tell(refusal);

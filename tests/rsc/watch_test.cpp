@@ -1,10 +1,12 @@
-// rsc run --watch: a real process, whose program, configuration and modules somebody edits meanwhile.
+// rsc run --watch and rsc monitor --upload: a real process, whose program, configuration and modules somebody edits meanwhile.
 #include <csignal>
+#include <filesystem>
 #include <sstream>
 #include <string>
 
 #include <catch2/catch.hpp>
 
+#include "tests/rsc/device.hpp"
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
 
@@ -86,4 +88,18 @@ TEST_CASE("run --watch does not outlive wrong usage") {
       test::rsc({"run", robot.program, "--watch", "--trace", robot.path("robot.json")});
   CHECK(outcome.exit == 2);
   CHECK(robot.read("robot.json") == test::kRobot);
+}
+
+TEST_CASE("a monitor that uploads waits for a file that is gone for a moment") {
+  const test::Device device;
+  const std::string record = device.path("r.jsonl");
+  const std::string program =
+      device.write("robot.rsl", "EVERY 100ms DO MOVE left_arm QUICKLY TO 10deg END\n");
+  Running monitor({"monitor", "--upload", program, "--record", record, "--port", device.port});
+  CHECK(monitor.has_written(record, R"("to":10)", 1));
+  std::filesystem::remove(program);
+  CHECK(monitor.has_said("cannot read " + program, 1));
+  device.write("robot.rsl", "EVERY 100ms DO MOVE left_arm QUICKLY TO 20deg END\n");
+  CHECK(monitor.has_written(record, R"("to":20)", 1));
+  CHECK(monitor.end(SIGINT).exit == 0);
 }
