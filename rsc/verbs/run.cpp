@@ -39,6 +39,7 @@ constexpr std::uint64_t kDefaultDurationUs = 10'000'000;
 // What the last step sets takes effect in the next one; only its KEPT numbers matter then.
 constexpr std::uint64_t kTakesEffectUs = kernel::kTick;
 constexpr std::uint64_t kLongestUnaskedUs = std::uint64_t{3600} * 1'000'000;
+constexpr std::uint64_t kSliceUs = 100'000;  // after which a run can be interrupted
 
 struct RunOptions {
   std::string file, scenario, trace, record, html, kept;
@@ -97,6 +98,7 @@ public:
         timeline_(program, names_) {}
 
   void watch(const sim::Simulator& simulator) { simulator_ = &simulator; }
+  void end_at(std::uint64_t end_us) { end_us_ = end_us; }
 
   void see(const link::Event& event) {
     kept_.see(event);
@@ -137,6 +139,16 @@ private:
   TimelineRecorder timeline_;
 };
 
+// Ctrl-C ends a run at that moment as --duration does. The result is the time of the end.
+std::uint64_t run_until(std::uint64_t end_us, sim::Simulator& simulator, RunOutput& output) {
+  std::uint64_t now_us = 0;
+  while (now_us < end_us && !Interruptible::interrupted())
+    simulator.run_until(now_us = std::min(now_us + kSliceUs, end_us));
+  output.end_at(now_us);
+  simulator.run_until(now_us + kTakesEffectUs);
+  return now_us;
+}
+
 void run(const RunOptions& options) {
   const Program program = load_program(options.file, options.how);
   Scenario scenario;
@@ -161,10 +173,16 @@ void run(const RunOptions& options) {
   }
   for (const Stimulus& stimulus : scenario.stimuli)
     simulator.feed(stimulus.at_us, stimulus.channel, stimulus.value);
+  const Interruptible interruptible;
   note_without_readings(options, program);
   note_what_is_late(options, scenario, end_us);
-  simulator.run_until(end_us + kTakesEffectUs);
+  const std::uint64_t ended_us = run_until(end_us, simulator, output);
   output.write(uploaded);
+  std::cout.flush();
+  if (ended_us < end_us)
+    std::cerr << fmt::format("{}: note: interrupted; the run ended at {}\n", options.file,
+                             seconds_text(ended_us));
+  interruptible.pass_on();
 }
 
 // False: the user ended it. The same signals also end a long run, as without --watch.

@@ -1,4 +1,9 @@
 // rsc run keeps KEPT numbers from one run to the next, and never what is not its own.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -67,6 +72,34 @@ TEST_CASE("what the last moment of a run has set is kept, and no more than that"
   }
   CHECK(robot.run(robot.program, {"--duration", "999ms", "--fresh"}).exit == 0);
   CHECK(robot.kept() == json({{"visits", "0"}, {"nearest", "400cm"}}));
+}
+
+TEST_CASE("a run that is interrupted ends there: its files and KEPT numbers are written") {
+  const Visit robot;
+  const std::string program =
+      robot.write("robot.rsl",
+                  "REMEMBER visits = 0 KEPT\nEVERY 100ms DO\n  RAISE visits BY 1\nEND\n"
+                  "WHEN near DISTANCE < 80cm DO LOG \"near\" END\n");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    test::Running run({"run", program, "--duration", "100h", "--fresh", "--trace",
+                       robot.path("t.jsonl"), "--record", robot.path("r.jsonl"), "--html",
+                       robot.path("p.html")});
+    REQUIRE(run.has_said("note: without a scenario", 1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const Outcome outcome = run.end(signal);
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit == 128 + signal);
+    CHECK_THAT(outcome.err, Contains("note: interrupted; the run ended at "));
+    const std::string trace = robot.read("t.jsonl");
+    const std::size_t last = trace.rfind('\n', trace.size() - 2) + 1;
+    const auto seconds = json::parse(trace.substr(last)).at("t_us").get<double>() / 1e6;
+    CHECK(std::stod(robot.kept().at("visits").get<std::string>()) ==
+          Approx(seconds * 10).margin(2));
+    CHECK(test::rsc({"replay", robot.path("r.jsonl")}).exit == 0);
+    CHECK_THAT(robot.read("p.html"), Contains("</html>"));
+    for (const char* const name : {"t.jsonl", "r.jsonl", "p.html", "robot.kept.json"})
+      std::filesystem::remove(robot.path(name));
+  }
 }
 
 // The optimiser must not take what is written for what the number is.

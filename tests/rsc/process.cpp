@@ -36,7 +36,8 @@ int wait_for(pid_t process) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  constexpr int kBySignal = 128;  // as a shell says it
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
 }
 
 // It prints into `out` and `err` of the folder.
