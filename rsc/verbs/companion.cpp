@@ -1,6 +1,6 @@
 // rsc companion --port P [--config robot.json] [--camera DEV|FILE] [--microphone DEV|FILE] [--preview FILE.png]
 //               [--programs FOLDER] [--duration TIME] [--key FILE] [--monitor [--format human|json]] [--record R.jsonl]
-// rsc companion --list
+// rsc companion --list [--format human|json]
 #include "rsc/companion/companion.hpp"
 
 #include <chrono>
@@ -19,6 +19,7 @@
 #include "rsc/device/printer.hpp"
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
+#include "rsc/json.hpp"
 #include "rsc/output.hpp"
 #include "rsc/verb.hpp"
 #include "rsc/verb_options.hpp"
@@ -34,15 +35,33 @@ struct CompanionOptions {
   Format format = Format::human;
 };
 
+Json json_of(const compiler::AlgorithmModule& module, const std::string& program) {
+  Json object{{"module", module.name},
+              {"does", doc_of_companion_module(module.name)},
+              {"device", module.device},
+              {"outputs", Json::array()},
+              {"program", nullptr}};
+  for (const compiler::ModuleOutput& output : module.outputs)
+    object["outputs"].push_back(output.name);
+  if (!program.empty()) object["program"] = program;
+  return object;
+}
+
 void list(const CompanionOptions& options) {
+  auto objects = Json::array();
   for (const compiler::AlgorithmModule& module : companion_modules()) {
     const std::string program = find_companion_program(module.name, options.sources.programs);
+    if (options.format == Format::json) {
+      objects.push_back(json_of(module, program));
+      continue;
+    }
     std::cout << fmt::format("{:<16} {} (from the {})\n{:<16} ", module.name,
                              doc_of_companion_module(module.name), module.device, "");
     for (const compiler::ModuleOutput& output : module.outputs)
       std::cout << output.name << ' ';
     std::cout << "· " << (program.empty() ? "is not installed" : program) << '\n';
   }
+  if (options.format == Format::json) std::cout << json_text(objects) << '\n';
 }
 
 // The algorithms of robot.json that run here.

@@ -21,6 +21,7 @@
 #include "rsc/device/watch.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/interruptible.hpp"
+#include "rsc/json.hpp"
 #include "rsc/output.hpp"
 #include "rsc/trace/channels.hpp"
 #include "rsc/trace/scenario.hpp"
@@ -308,6 +309,13 @@ void send(Feeder& feeder, const Wanted& stimuli, std::uint64_t begin_us,
 void feed(const FeedOptions& options) {
   check_what_is_asked(options);
   std::optional<Program> program;
+void say_fed(std::size_t count, Format format) {
+  if (format == Format::json)
+    std::cout << json_text({{"fed", count}}) << '\n';
+  else
+    std::cout << fmt::format("{} reading{} fed\n", count, count == 1 ? "" : "s");
+}
+
   Wanted stimuli;
   if (!options.upload.empty()) {
     program = load_program(options.upload, options.how);
@@ -341,8 +349,8 @@ void feed(const FeedOptions& options) {
     watch->show(*options.watch + feeder.rest());
     if (!options.upload.empty())
       expect_passed_trial(options.upload, session->client.kept(), *program);
-  } else if (options.format == Format::human) {
-    std::cout << fmt::format("{} reading{} fed\n", count, count == 1 ? "" : "s");
+  } else {
+    say_fed(count, options.format);
   }
 }
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include <nlohmann/json.hpp>
+
 #include "companion/words_file.hpp"
 #include "compiler/reading.hpp"
 #include "rsc/algorithm_modules.hpp"
@@ -534,4 +536,13 @@ TEST_CASE("companion --list says which modules there are, and which are installe
   CHECK_THAT(outcome.out, Contains("command_words") &&
                               Contains("WORD · " + ears.path("robosync-command-words")));
   CHECK_THAT(outcome.out, Contains("COUNT ANGLE NEARNESS · is not installed"));
+  const nlohmann::json list = nlohmann::json::parse(
+      test::rsc({"companion", "--list", "--programs", ears.path(""), "--format", "json"}).out);
+  const auto of = [&](const std::string& name) {
+    return *std::ranges::find_if(list, [&](const auto& one) { return one.at("module") == name; });
+  };
+  CHECK(of("command_words").at("program") == ears.path("robosync-command-words"));
+  CHECK(of("face_detect").at("program").is_null());
+  CHECK(of("face_detect").at("device") == "camera");
+  CHECK(of("face_detect").at("outputs") == nlohmann::json({"COUNT", "ANGLE", "NEARNESS"}));
 }
