@@ -102,8 +102,8 @@ void add_quiet_option(Options& options, bool& quiet, const std::string& descript
   options.flag("-q,--quiet", quiet, description);
 }
 
-void refuse_quiet(bool refused, const std::string& other) {
-  if (refused) throw Failure(Exit::usage, "--quiet and " + other + " do not go together");
+void refuse_pair(bool given, const std::string& one, const std::string& other) {
+  if (given) throw Failure(Exit::usage, one + " and " + other + " do not go together");
 }
 
 void add_duration_option(Options& options, const std::string& name,

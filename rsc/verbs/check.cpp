@@ -137,8 +137,9 @@ void add_check(Options& options) {
   options.arguments("FILE", asked->files,
                     "programs (.rsl); -: from stdin, with the robot.json of this folder",
                     Options::Need::required);
-  options.flag("--timing", asked->timing,
-               "show what a step costs, rule by rule, and the memory it takes");
+  options.flag(
+      "--timing", asked->timing,
+      "show what a step costs, rule by rule, and the memory it takes; not with --format sarif");
   options.flag("--anyway", asked->anyway, "even if it is too much for the board in robot.json");
   add_compile_options(options, asked->how);
   options.choice(
@@ -147,8 +148,9 @@ void add_check(Options& options) {
       "human, json or sarif (2.1.0)");
   add_quiet_option(options, asked->quiet, "say nothing if there is no error");
   options.runs([asked] {
-    refuse_quiet(asked->quiet && asked->timing, "--timing");
-    refuse_quiet(asked->quiet && asked->format != Report::human, "--format");
+    refuse_pair(asked->quiet && asked->timing, "--quiet", "--timing");
+    refuse_pair(asked->quiet && asked->format != Report::human, "--quiet", "--format");
+    refuse_pair(asked->timing && asked->format == Report::sarif, "--timing", "--format sarif");
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;
     check(*asked);
   });

@@ -92,7 +92,7 @@ void add_compile(Options& options) {
   add_format_option(options, asked->format);
   add_quiet_option(options, asked->quiet, "say nothing if there is no error");
   options.runs([asked] {
-    refuse_quiet(asked->quiet && asked->format == Format::json, "--format json");
+    refuse_pair(asked->quiet && asked->format == Format::json, "--quiet", "--format json");
     asked->how.json = asked->format == Format::json;
     asked->how.source_lines = !asked->strip;
     asked->how.judged = asked->anyway ? Judged::not_at_all : Judged::by_time;

@@ -196,7 +196,7 @@ void add_test(Options& options) {
   add_format_option(options, asked->format);
   add_quiet_option(options, asked->quiet, "say nothing about tests that pass");
   options.runs([asked] {
-    refuse_quiet(asked->quiet && asked->format == Format::json, "--format json");
+    refuse_pair(asked->quiet && asked->format == Format::json, "--quiet", "--format json");
     test(*asked);
   });
 }

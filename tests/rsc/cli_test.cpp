@@ -141,6 +141,8 @@ TEST_CASE("with --quiet a verb says nothing when all is well") {
     CHECK(outcome.out.empty());
   }
   CHECK(test::rsc({"check", "-q", "--timing", good}).exit == 2);
+  CHECK_THAT(test::rsc({"check", "--timing", "--format", "sarif", good}).err,
+             Contains("--timing and --format sarif do not go together"));
   CHECK(test::rsc({"check", "-q", "--format", "json", good}).exit == 2);
 }
 
