@@ -2,10 +2,10 @@
 #include "rsc/timeline/page_recorder.hpp"
 
 #include <algorithm>
+#include <iostream>
 #include <span>
 #include <vector>
 
-#include "rsc/failure.hpp"
 #include "rsc/output.hpp"
 #include "rsc/timeline/page.hpp"
 
@@ -33,8 +33,10 @@ void PageRecorder::event(const link::Event& event, const TraceNames& names) {
 }
 
 void PageRecorder::write(const std::string& file, const std::string& title) {
-  if (!timeline_)
-    throw Failure(Exit::program, "nothing happened that a page could show; none was written");
+  if (!timeline_) {
+    std::cerr << "note: nothing happened that a page could show; none was written\n";
+    return;
+  }
   const std::vector<std::string> none;
   const auto& lines = names_.origin == nullptr ? none : names_.origin->lines;
   const std::string page = timeline_page(title, timeline_->finish(end_us_), lines);

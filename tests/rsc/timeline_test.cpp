@@ -1,9 +1,11 @@
 // rsc run --html: what stands in the page for a run; how a browser shows it is tests/timeline's part.
+#include <filesystem>
 #include <regex>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/rsc/device.hpp"
 #include "tests/rsc/image.hpp"
 #include "tests/rsc/process.hpp"
 
@@ -245,4 +247,13 @@ TEST_CASE("the same run gives the same page; it is not written over the program"
   const Outcome over = page.run(page.program);
   CHECK(over.exit == 2);
   CHECK(page.read("robot.rsl") == kShownProgram);
+}
+
+TEST_CASE("a monitor of a robot where nothing happens writes no page, and that is no mistake") {
+  const test::Device device;
+  const Outcome outcome =
+      device.run({"monitor", "--duration", "100ms", "--html", device.path("quiet.html")});
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.err, Contains("note: nothing happened that a page could show"));
+  CHECK_FALSE(std::filesystem::exists(device.path("quiet.html")));
 }
