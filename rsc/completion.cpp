@@ -1,5 +1,6 @@
-// Completion scripts for bash, fish and zsh. They offer the words of an option ("human|json"), serial ports after --port, files
-// where an option takes one, and nothing for a number or a name.
+// Completion scripts for bash, fish and zsh. They offer the words of an option ("human|json") or of a verb ("convert"), serial ports
+// after --port, files where an option takes one, and nothing for a number or a name.
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -15,19 +16,25 @@ constexpr std::string_view kPort = "--port";
 constexpr std::string_view kListPorts =
     "ls -d /dev/ttyACM* /dev/ttyUSB* /dev/pts/[0-9]* 2>/dev/null";
 
-// "FILE", "FOLDER", "S.json".
+// "FILE", "DEV|FILE", "FOLDER", "S.json".
 bool is_path(const OptionUsage& option) {
-  return option.value == "FILE" || option.value == "FOLDER" ||
+  return option.value.find("FILE") != std::string::npos || option.value == "FOLDER" ||
          option.value.find('.') != std::string::npos;
 }
 
-// "human|json" as "human json"; empty if the value is not a choice of words.
+// "human|json" as "human json"; empty if the value is not a choice of words, but stands for something: "TIME".
 std::string words_of(const OptionUsage& option) {
   std::string words = option.value;
-  if (words.find('|') == std::string::npos) return {};
-  for (char& c : words)
-    if (c == '|') c = ' ';
+  if (std::ranges::any_of(words, [](char c) { return c >= 'A' && c <= 'Z'; })) return {};
+  std::ranges::replace(words, '|', ' ');
   return words;
+}
+
+// The words that may follow the verb itself: "bash fish zsh". Empty: it takes none.
+std::string words_after(const VerbUsage& verb) {
+  for (const OptionUsage& option : verb.options)
+    if (option.names.empty()) return words_of(option);
+  return {};
 }
 
 std::string case_of(const VerbUsage& verb, const OptionUsage& option) {
@@ -60,10 +67,12 @@ std::string fish_option(const VerbUsage& verb, const OptionUsage& option) {
     line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   if (option.names.front() == kPort)
     line += fmt::format(" -x -a '({})'", kListPorts);
+  else if (is_path(option))
+    line += " -r";
   else if (const std::string words = words_of(option); !words.empty())
     line += fmt::format(" -x -a '{}'", words);
   else if (!option.value.empty())
-    line += is_path(option) ? " -r" : " -x";
+    line += " -x";
   return fmt::format("{} -d {}\n", line, in_fish(option.description));
 }
 
@@ -79,9 +88,8 @@ std::string zsh_offer(const OptionUsage& option) {
   return words.empty() ? " " : "(" + words + ")";
 }
 
-// `--name[description]:VALUE:offer`; for a positional argument `*:FILE:_files`.
+// `--name[description]:VALUE:offer`.
 std::string zsh_option(const OptionUsage& option) {
-  if (option.names.empty()) return fmt::format("        '*:{}:_files' \\\n", in_zsh(option.value));
   std::string lines;
   for (const std::string& name : option.names) {
     const std::string value =
@@ -91,14 +99,29 @@ std::string zsh_option(const OptionUsage& option) {
   return lines;
 }
 
+// The options; then the word after the verb, and files, once however many arguments take one.
+std::string zsh_arguments(const VerbUsage& verb) {
+  std::string lines, files;
+  for (const OptionUsage& option : verb.options) {
+    lines += zsh_option(option);
+    if (option.names.empty() && words_of(option).empty())
+      files = fmt::format("        '*:{}:_files' \\\n", in_zsh(option.value));
+  }
+  if (const std::string words = words_after(verb); !words.empty())
+    lines += fmt::format("        '1:{}:({})' \\\n", words, words);
+  return lines + files;
+}
+
 }  // namespace
 
 std::string bash_completion(const std::vector<VerbUsage>& verbs) {
-  std::string names, values, options;
+  std::string names, values, after, options;
   for (const VerbUsage& verb : verbs) {
     names += (names.empty() ? "" : " ") + verb.name;
     for (const OptionUsage& option : verb.options)
       values += case_of(verb, option);
+    if (const std::string words = words_after(verb); !words.empty())
+      after += fmt::format("      {},2) _rsc_words \"{}\" ;;\n", verb.name, words);
     options += fmt::format("    {}) _rsc_words \"{}\" ;;\n", verb.name, names_of(verb));
   }
   return fmt::format(R"(# Completion of rsc for bash, printed by `rsc completion bash`.
@@ -119,10 +142,12 @@ _rsc() {{
     return
   fi
   case $verb,$before in
-{}    help,help) _rsc_words "{}"; return ;;
-  esac
+{}  esac
   if [ "${{word#-}}" = "$word" ]; then
-    _rsc_files
+    case $verb,$COMP_CWORD in
+      help,2) _rsc_words "{}" ;;
+{}      *) _rsc_files ;;
+    esac
     return
   fi
   case $verb in
@@ -130,7 +155,7 @@ _rsc() {{
 }}
 complete -F _rsc rsc
 )",
-                     kListPorts, names, values, names, options);
+                     kListPorts, names, values, names, after, options);
 }
 
 std::string fish_completion(const std::vector<VerbUsage>& verbs) {
@@ -138,9 +163,15 @@ std::string fish_completion(const std::vector<VerbUsage>& verbs) {
   for (const VerbUsage& verb : verbs)
     text += fmt::format("complete -c rsc -f -n __fish_use_subcommand -a {} -d {}\n", verb.name,
                         in_fish(verb.summary));
-  for (const VerbUsage& verb : verbs)
+  for (const VerbUsage& verb : verbs) {
     for (const OptionUsage& option : verb.options)
       if (!option.names.empty()) text += fish_option(verb, option);
+    if (const std::string words = words_after(verb); !words.empty())
+      text += fmt::format(
+          "complete -c rsc -f -n '__fish_seen_subcommand_from {}; and not "
+          "__fish_seen_subcommand_from {}' -a '{}'\n",
+          verb.name, words, words);
+  }
   return text;
 }
 
@@ -148,11 +179,8 @@ std::string zsh_completion(const std::vector<VerbUsage>& verbs) {
   std::string summaries, cases;
   for (const VerbUsage& verb : verbs) {
     summaries += fmt::format("    '{}:{}'\n", verb.name, in_zsh(verb.summary));
-    std::string options;
-    for (const OptionUsage& option : verb.options)
-      options += zsh_option(option);
     const std::string names =
-        verb.name == "help" ? "_describe verb verbs" : "_arguments -s \\\n" + options;
+        verb.name == "help" ? "_describe verb verbs" : "_arguments -s \\\n" + zsh_arguments(verb);
     cases += fmt::format("    {})\n      {}\n      ;;\n", verb.name, names);
   }
   return fmt::format(R"zsh(#compdef rsc

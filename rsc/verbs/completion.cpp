@@ -22,14 +22,14 @@ constexpr std::array<std::pair<std::string_view, Script>, 3> kShells = {
 
 void add_completion(Options& options) {
   auto shell = std::make_shared<std::string>();
-  options.argument("SHELL", *shell, "bash, fish or zsh", Options::Need::required);
+  options.argument("bash|fish|zsh", *shell, "the shell", Options::Need::required);
   options.runs([shell] {
     for (const auto& [name, script] : kShells)
       if (name == *shell) {
         std::cout << script(all_usage());
         return;
       }
-    throw Failure(Exit::usage, fmt::format("SHELL is bash, fish or zsh, not `{}`", *shell));
+    throw Failure(Exit::usage, fmt::format("the shell is bash, fish or zsh, not `{}`", *shell));
   });
 }
 

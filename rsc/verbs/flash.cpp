@@ -47,11 +47,11 @@ Board board_called(const std::string& name) {
 }
 
 // Emulated boards are not flashed.
-std::string boards_to_flash() {
+std::string boards_to_flash(const char* between) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < compiler::board_names().size(); ++i)
     if (compiler::board_at(i).flash) names.push_back(compiler::board_names()[i]);
-  return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{}", fmt::join(names, between));
 }
 
 void say_what_next(const Board& board) {
@@ -132,7 +132,7 @@ void program_by(Way way, const FlashOptions& options, const Board& board) {
 
 void flash(const FlashOptions& options) {
   if (options.board.empty())
-    throw Failure(Exit::usage, "--board is required: which board is it? " + boards_to_flash());
+    throw Failure(Exit::usage, "--board is required: which board is it? " + boards_to_flash(", "));
   const Board board = board_called(options.board);
   if (!board.flash) {
     throw Failure(Exit::usage, fmt::format("{} is an emulated board: there is nothing to flash, "
@@ -162,7 +162,7 @@ void flash(const FlashOptions& options) {
 
 void add_flash(Options& options) {
   auto asked = std::make_shared<FlashOptions>();
-  options.option("--board", "NAME", asked->board, "the board (required): " + boards_to_flash());
+  options.option("--board", boards_to_flash("|"), asked->board, "the board (required)");
   options.argument("FILE", asked->file,
                    "the firmware; else robosync-NAME here or in build/firmware",
                    Options::Need::optional);

@@ -99,7 +99,9 @@ bool check(const std::string& file, const std::optional<std::string>& source,
 
 void run(const ModuleOptions& options) {
   if (options.action != "check")
-    throw Failure(Exit::usage, fmt::format("ACTION is check, not `{}`", options.action));
+    throw Failure(
+        Exit::usage,
+        fmt::format("`rsc module {}` does not exist; write `rsc module check`", options.action));
   std::error_code error;
   if (!fs::exists(options.file, error))
     throw Failure(Exit::outside, fmt::format("there is no file {}", options.file));
@@ -116,7 +118,7 @@ void run(const ModuleOptions& options) {
 
 void add_module(Options& options) {
   auto asked = std::make_shared<ModuleOptions>();
-  options.argument("ACTION", asked->action, "check: test the module against its declaration",
+  options.argument("check", asked->action, "test the module against its declaration",
                    Options::Need::required);
   options.argument("FILE", asked->file, "the module: its C file, or compiled (.so)",
                    Options::Need::required);

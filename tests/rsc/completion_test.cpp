@@ -59,6 +59,32 @@ TEST_CASE("bash completes verbs, options, the words of an option, and files") {
   CHECK(offered(place, {"rsc", "nothing", "--x"}) == "\n");
 }
 
+TEST_CASE(
+    "bash completes the words after a verb, boards, and files where a device may stand, too") {
+  const test::Folder folder;
+  folder.write("film.avi", "");
+  const std::string place = folder.path("");
+  CHECK(offered(place, {"rsc", "completion", ""}) == "bash\nfish\nzsh\n");
+  CHECK(offered(place, {"rsc", "trace", ""}) == "convert\n");
+  CHECK(offered(place, {"rsc", "trace", "convert", ""}) == "film.avi\n");
+  CHECK(offered(place, {"rsc", "trace", "--t"}) == "--to\n");
+  CHECK(offered(place, {"rsc", "module", ""}) == "check\n");
+  CHECK_THAT(offered(place, {"rsc", "flash", "--board", ""}),
+             Contains("microbit-v2\n") && !Contains("mps2"));
+  for (const char* const option : {"--camera", "--microphone"})
+    CHECK(offered(place, {"rsc", "companion", option, ""}) == "film.avi\n");
+}
+
+TEST_CASE(
+    "fish completes the words after a verb, boards, and files where a device may stand, too") {
+  const std::string fish = test::rsc({"completion", "fish"}).out;
+  CHECK_THAT(fish, Contains("'__fish_seen_subcommand_from companion' -l camera -r -d"));
+  CHECK_THAT(fish,
+             Contains("from trace; and not __fish_seen_subcommand_from convert' -a 'convert'"));
+  CHECK_THAT(fish, Contains("-a 'bash fish zsh'"));
+  CHECK_THAT(fish, Contains("from flash' -l board -x -a 'b-l475e-iot01a "));
+}
+
 TEST_CASE("bash completes serial lines, and offers no files where a number is wanted") {
   const test::Folder folder;
   folder.write("7.rsl", "");
@@ -96,5 +122,5 @@ TEST_CASE("fish and the manual page have every verb, and every option of it") {
 TEST_CASE("a shell that rsc does not know is exit 2, and says which it knows") {
   const Outcome outcome = test::rsc({"completion", "csh"});
   CHECK(outcome.exit == 2);
-  CHECK_THAT(outcome.err, Contains("SHELL is bash, fish or zsh, not `csh`"));
+  CHECK_THAT(outcome.err, Contains("the shell is bash, fish or zsh, not `csh`"));
 }

@@ -45,6 +45,19 @@ class Zsh(unittest.TestCase):
         for option in options[1:]:
             self.assertRegex(option, r"^\*(-[-a-zA-Z0-9]+\[([^]\\]|\\.)*\](:.*)?|:FILE:_files)$")
 
+    def test_words_after_a_verb_and_boards(self):
+        self.assertEqual(self.offered("rsc", "completion", "")[-1], "1:bash fish zsh:(bash fish zsh)")
+        trace = self.offered("rsc", "trace", "")
+        self.assertEqual(trace[-2:], ["1:convert:(convert)", "*:FILE:_files"])
+        (board,) = [one for one in self.offered("rsc", "flash", "") if one.startswith("*--board")]
+        self.assertRegex(board, r":\(b-l475e-iot01a .*microbit-v2.*\)$")
+
+    def test_files_where_a_device_may_stand_too(self):
+        for option in self.offered("rsc", "companion", ""):
+            if option.startswith(("*--camera", "*--microphone")):
+                self.assertTrue(option.endswith(":DEV|FILE:_files"))
+        self.assertEqual(sum(one.startswith("*:") for one in self.offered("rsc", "teach", "")), 1)
+
 
 if __name__ == "__main__":
     unittest.main()
