@@ -10,6 +10,7 @@
 
 #include "compiler/diagnostics/nearest.hpp"
 #include "compiler/source/ascii.hpp"
+#include "compiler/units/units.hpp"
 #include "rsc/quantity.hpp"
 #include "runtime-m4/policy/threads.hpp"
 
@@ -142,6 +143,20 @@ std::string_view unit_of(const Program& program, std::uint8_t channel) {
   const auto found = units.find(name);
   if (found == units.end() || found->second == nullptr) return {};
   return found->second->spelling;
+}
+
+std::string range_note(const Program& program, std::uint8_t channel, vm::Value value) {
+  const vm::Image& image = program.image();
+  const vm::Channel& range = image.channels[channel];
+  if (value >= range.min && value <= range.max) return {};
+  const compiler::Unit* const written = compiler::find_unit(unit_of(program, channel));
+  const bool fits = written != nullptr && written->dimension == range.dimension;
+  const compiler::Unit& unit = fits ? *written : compiler::canonical_unit(range.dimension);
+  const auto text = [&](vm::Value one) { return compiler::format_value(one, unit); };
+  return fmt::format("{} is out of the range of {} {}, {} to {}: the robot reads {}", text(value),
+                     image.string(image.sensors[range.sensor].name), image.string(range.name),
+                     text(range.min), text(range.max),
+                     text(std::clamp(value, range.min, range.max)));
 }
 
 vm::Value parse_reading(const vm::Image& image, std::uint8_t channel, std::string_view text,

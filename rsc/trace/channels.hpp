@@ -33,6 +33,9 @@ struct FoundChannel {
 // The unit of its numbers in robot.json; empty: none, or not known.
 [[nodiscard]] std::string_view unit_of(const Program& program, std::uint8_t channel);
 
+// "2000cm is out of the range of proximity DISTANCE, 2cm to 400cm: the robot reads 400cm"; empty: it is in the range.
+[[nodiscard]] std::string range_note(const Program& program, std::uint8_t channel, vm::Value value);
+
 // Parses a reading as a person writes it: "20cm", or a label of a channel with words. A channel
 // with two labels also takes true and false, unless these are labels. Throws std::invalid_argument,
 // which may suggest `unit`, the channel's own.

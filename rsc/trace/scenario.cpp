@@ -15,7 +15,6 @@
 #include "compiler/config/json_reader.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/sorting.hpp"
-#include "compiler/units/units.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/files.hpp"
 #include "rsc/quantity.hpp"
@@ -422,25 +421,18 @@ private:
     if (scenario_.stimuli.size() == kMaxStimuli) {
       fail(stimulus_, "the scenario has more than a million readings");
     }
-    const vm::Channel& range = image_.channels[channel];
-    if (value < range.min || value > range.max) note_range(channel, value);
+    note_range(channel, value);
     scenario_.stimuli.push_back({at, channel, value});
   }
 
   // Once for each channel.
   void note_range(std::uint8_t channel, vm::Value value) {
-    if (!out_of_range_.insert(channel).second) return;
-    const vm::Channel& range = image_.channels[channel];
-    const compiler::Unit* const written = compiler::find_unit(unit_of(program_, channel));
-    const bool fits = written != nullptr && written->dimension == range.dimension;
-    const compiler::Unit& unit = fits ? *written : compiler::canonical_unit(range.dimension);
-    const auto text = [&](vm::Value one) { return compiler::format_value(one, unit); };
+    const std::string note = range_note(program_, channel, value);
+    if (note.empty() || !out_of_range_.insert(channel).second) return;
     scenario_.notes.push_back(fmt::format(
-        "{}:{}: note: {} is out of the range of {} {}, {} to {}: the robot reads {}",
-        in_recording_ == nullptr ? file_ : in_recording_->file,
-        in_recording_ == nullptr ? line_of(stimulus_) : in_recording_->cells.line, text(value),
-        image_.string(image_.sensors[range.sensor].name), image_.string(range.name),
-        text(range.min), text(range.max), text(std::clamp(value, range.min, range.max))));
+        "{}:{}: note: {}", in_recording_ == nullptr ? file_ : in_recording_->file,
+        in_recording_ == nullptr ? line_of(stimulus_) : in_recording_->cells.line,
+        note));
   }
 
   const std::string& file_;

@@ -53,7 +53,7 @@ struct FeedOptions {
 // "touch.LEVEL=2"
 Stimulus parse_stimulus(const std::string& text, std::uint64_t at_us, const vm::Image& image) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) {
+  if (equals == std::string::npos || text.find_first_of("=.") == 0) {
     throw Failure(Exit::usage, fmt::format("`{}` is not a reading; write SENSOR.CHANNEL=VALUE, as "
                                            "in touch.LEVEL=2",
                                            text));
@@ -223,8 +223,12 @@ Wanted wanted(const FeedOptions& options, const Program& program) {
   }
   const auto at_us =
       static_cast<std::uint64_t>(options.at.value_or(milliseconds(0)).count()) * 1000;
-  for (const std::string& text : options.readings)
-    wanted.readings.push_back(parse_stimulus(text, at_us, program.image()));
+  for (const std::string& text : options.readings) {
+    const Stimulus reading = parse_stimulus(text, at_us, program.image());
+    wanted.readings.push_back(reading);
+    if (const auto note = range_note(program, reading.channel, reading.value); !note.empty())
+      std::cerr << "note: " << note << '\n';
+  }
   return wanted;
 }
 
@@ -305,10 +309,6 @@ void send(Feeder& feeder, const Wanted& stimuli, std::uint64_t begin_us,
   }
 }
 
-// Errors in the scenario are reported before anything is uploaded.
-void feed(const FeedOptions& options) {
-  check_what_is_asked(options);
-  std::optional<Program> program;
 void say_fed(std::size_t count, Format format) {
   if (format == Format::json)
     std::cout << json_text({{"fed", count}}) << '\n';
@@ -316,6 +316,10 @@ void say_fed(std::size_t count, Format format) {
     std::cout << fmt::format("{} reading{} fed\n", count, count == 1 ? "" : "s");
 }
 
+// Errors in the scenario are reported before anything is uploaded.
+void feed(const FeedOptions& options) {
+  check_what_is_asked(options);
+  std::optional<Program> program;
   Wanted stimuli;
   if (!options.upload.empty()) {
     program = load_program(options.upload, options.how);

@@ -69,7 +69,17 @@ TEST_CASE("upload, info, feed and monitor against a running robot") {
   outcome = device.run({"feed", "touch.LEVL=2"});
   CHECK(outcome.exit == 1);
   CHECK_THAT(outcome.err, Contains("did you mean `LEVEL`?"));
-  CHECK(device.run({"feed", "touch"}).exit == 2);
+  for (const char* const none : {"touch", "=1", ".LEVEL=1"}) {
+    outcome = device.run({"feed", none});
+    CHECK(outcome.exit == 2);
+    CHECK_THAT(outcome.err, Contains("is not a reading; write SENSOR.CHANNEL=VALUE"));
+  }
+
+  outcome = device.run({"feed", "proximity.DISTANCE=9m", "touch.LEVEL=1", "--format", "json"});
+  CHECK(json::parse(outcome.out) == json({{"fed", 2}}));
+  CHECK(outcome.err ==
+        "note: 9000mm is out of the range of proximity DISTANCE, 20mm to 4000mm: the robot reads "
+        "4000mm\n");
 
   outcome = device.run({"monitor", "--duration", "200ms"});
   CHECK(outcome.exit == 0);
