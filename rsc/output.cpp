@@ -158,22 +158,21 @@ bool matters(FileKind kind) {
 }
 
 // Works for paths that do not exist yet.
-fs::path whole_name(const std::string& path) {
+fs::path whole_name(const fs::path& path) {
   std::error_code error;
   return fs::weakly_canonical(fs::absolute(path, error), error);
 }
 
 }  // namespace
 
-void check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const std::string& path = outputs[i].path;
-    if (path.empty()) continue;
-    check_output(outputs[i], inputs);
-    for (std::size_t other = 0; other < i; ++other)
-      if (!outputs[other].path.empty() && whole_name(outputs[other].path) == whole_name(path) &&
-          !is_written_through(path, facts_of(path)))
-        refuse(path, "is given for two outputs");
+void check_outputs(std::initializer_list<Output> outputs, const std::vector<std::string>& inputs) {
+  for (const Output& output : outputs) {
+    if (output.path.empty()) continue;
+    check_output(output, inputs);
+    for (const Output* other = outputs.begin(); other != &output; ++other)
+      if (!other->path.empty() && whole_name(other->path) == whole_name(output.path) &&
+          !is_written_through(output.path, facts_of(output.path)))
+        refuse(output.path, "is given for two outputs");
   }
 }
 

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rsc/file_kind.hpp"
@@ -12,7 +14,7 @@
 namespace robosync::tool {
 
 struct Output {
-  std::string path;  // empty: not asked for
+  std::string_view path;  // empty: not asked for
   FileKind again =
       FileKind::other;  // what may be replaced although it matters: an older output of this kind
 };
@@ -22,7 +24,7 @@ struct Output {
 // directory (outside). Inputs that do not exist are ignored.
 void check_output(const Output& output, const std::vector<std::string>& inputs);
 // The same for several, and if two of them are the same file (usage).
-void check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs);
+void check_outputs(std::initializer_list<Output> outputs, const std::vector<std::string>& inputs);
 
 // `path` is this program's stdout, so nothing else should be printed there.
 [[nodiscard]] bool is_stdout(const std::filesystem::path& path);

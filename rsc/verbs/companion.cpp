@@ -36,14 +36,13 @@ struct CompanionOptions {
 };
 
 Json json_of(const compiler::AlgorithmModule& module, const std::string& program) {
-  Json object{{"module", module.name},
-              {"does", doc_of_companion_module(module.name)},
-              {"device", module.device},
-              {"outputs", Json::array()},
-              {"program", nullptr}};
+  Json object;
+  object["module"] = module.name;
+  object["does"] = doc_of_companion_module(module.name);
+  object["device"] = module.device;
   for (const compiler::ModuleOutput& output : module.outputs)
     object["outputs"].push_back(output.name);
-  if (!program.empty()) object["program"] = program;
+  object["program"] = program.empty() ? Json(nullptr) : Json(program);
   return object;
 }
 
