@@ -6,6 +6,8 @@
 #include <string>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "compiler/config/robot.hpp"
 #include "rsc/failure.hpp"
 #include "rsc/quantity.hpp"
@@ -102,8 +104,8 @@ void add_quiet_option(Options& options, bool& quiet, const std::string& descript
   options.flag("-q,--quiet", quiet, description);
 }
 
-void refuse_pair(bool given, const std::string& one, const std::string& other) {
-  if (given) throw Failure(Exit::usage, one + " and " + other + " do not go together");
+void refuse_pair(bool given, const char* one, const char* other) {
+  if (given) throw Failure(Exit::usage, fmt::format("{} and {} do not go together", one, other));
 }
 
 void add_duration_option(Options& options, const std::string& name,

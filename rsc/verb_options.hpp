@@ -29,7 +29,7 @@ void add_compile_options(Options& options, CompileOptions& how);
 // -q, --quiet.
 void add_quiet_option(Options& options, bool& quiet, const std::string& description);
 // Throws Failure (usage) if both options are given, which do not go together.
-void refuse_pair(bool given, const std::string& one, const std::string& other);
+void refuse_pair(bool given, const char* one, const char* other);
 void add_duration_option(Options& options, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,
                          const std::string& description);
