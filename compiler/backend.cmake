@@ -11,7 +11,8 @@ function(embed folder suffix header type function out)
     DEPENDS ${files} ${script} ${PROJECT_SOURCE_DIR}/cmake/pack.cmake
     COMMENT "Embedding ${folder}/*.${suffix}"
     VERBATIM)
-  set_source_files_properties(${out} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${out} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS
+                              $<$<NOT:$<BOOL:${ROBOSYNC_SANITIZE}>>:-Oz>)
 endfunction()
 set(device_texts ${CMAKE_CURRENT_BINARY_DIR}/device_texts.cpp)
 embed(${PROJECT_SOURCE_DIR}/stdlib/devices json compiler/config/devices.hpp DeviceText device_texts
@@ -87,6 +88,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/motions.cpp
   sema/number_lists.cpp
   sema/perform.cpp
+  sema/quantities.cpp
   sema/rules.cpp
   sema/statements.cpp
   sema/texts.cpp
@@ -105,6 +107,5 @@ target_sources(robosync_compiler PRIVATE
   ir/expression.cpp
   ir/fact.cpp
   ir/program.cpp
-  sema/names.cpp
-  sema/quantities.cpp)
+  sema/names.cpp)
 target_link_libraries(robosync_compiler PRIVATE nlohmann_json::nlohmann_json)

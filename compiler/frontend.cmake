@@ -90,6 +90,7 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/pasted.cpp
   syntax/repair.cpp
   syntax/robot_lines.cpp
+  syntax/spoken_forms.cpp
   syntax/spoken_words.cpp
   syntax/torn_names.cpp
   syntax/unit_apart.cpp

@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 9> kForeignDefines = {
 inline constexpr const char* kOwnLine = "write each command on its own line: they start together";
 
 // Habits from other constructs of RSL (habits.cpp) and from other languages (foreign_habits.cpp), and words that mean
-// something else where they are (misplaced_words.cpp).
+// something else where they are (misplaced_words.cpp), or that people say (spoken_forms.cpp).
 // Each reports the habit and returns the change that lets the grammar continue; nothing when it finds none.
 [[nodiscard]] std::optional<Edit> explain_habit(const Tokens& tokens, const SourceFile& source,
                                                 const Attempt& failure, Diagnostics& diagnostics);
@@ -42,6 +42,11 @@ inline constexpr const char* kOwnLine = "write each command on its own line: the
                                                         const SourceFile& source,
                                                         const Attempt& failure,
                                                         Diagnostics& diagnostics);
+
+[[nodiscard]] std::optional<Edit> explain_spoken_form(const Tokens& tokens,
+                                                      const SourceFile& source,
+                                                      const Attempt& failure,
+                                                      Diagnostics& diagnostics);
 
 [[nodiscard]] std::optional<Edit> explain_misplaced_word(const Tokens& tokens,
                                                          const SourceFile& source,

@@ -33,39 +33,21 @@ public:
     if (auto edit = safety_without_when()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
-    for (const Habit habit : {&MisplacedWords::within_before_then,
-                              &MisplacedWords::negated_comparison,
-                              &MisplacedWords::negation,
-                              &MisplacedWords::end_before_else,
-                              &MisplacedWords::rule_in_rule,
-                              &MisplacedWords::step_in_response,
-                              &MisplacedWords::do_without_when,
-                              &MisplacedWords::lonely_else,
-                              &MisplacedWords::then_in_line,
-                              &MisplacedWords::commands_with_and,
-                              &MisplacedWords::commands_with_comma,
-                              &MisplacedWords::second_statement,
-                              &MisplacedWords::second_stopped,
-                              &MisplacedWords::goes_on_above,
-                              &MisplacedWords::times_of_name,
-                              &MisplacedWords::counted_text,
-                              &MisplacedWords::set_of_channel,
-                              &MisplacedWords::rate_apart,
-                              &MisplacedWords::foreign_rate,
-                              &MisplacedWords::command_in_behavior,
-                              &MisplacedWords::within,
-                              &MisplacedWords::columns_of_motion,
-                              &MisplacedWords::word_with_sign,
-                              &MisplacedWords::changed_wrongly,
-                              &MisplacedWords::pick_without_option,
-                              &MisplacedWords::repeat_how_often,
-                              &MisplacedWords::repeat_as_spoken,
-                              &MisplacedWords::every_time,
-                              &MisplacedWords::band_as_condition,
-                              &MisplacedWords::resume_after,
-                              &MisplacedWords::modifier_behind_do,
-                              &MisplacedWords::otherwise,
-                              &MisplacedWords::more_than})
+    for (const Habit habit :
+         {&MisplacedWords::negated_comparison,  &MisplacedWords::negation,
+          &MisplacedWords::end_before_else,     &MisplacedWords::rule_in_rule,
+          &MisplacedWords::step_in_response,    &MisplacedWords::do_without_when,
+          &MisplacedWords::lonely_else,         &MisplacedWords::then_in_line,
+          &MisplacedWords::commands_with_and,   &MisplacedWords::commands_with_comma,
+          &MisplacedWords::second_statement,    &MisplacedWords::second_stopped,
+          &MisplacedWords::goes_on_above,       &MisplacedWords::times_of_name,
+          &MisplacedWords::counted_text,        &MisplacedWords::set_of_channel,
+          &MisplacedWords::rate_apart,          &MisplacedWords::foreign_rate,
+          &MisplacedWords::command_in_behavior, &MisplacedWords::within,
+          &MisplacedWords::columns_of_motion,   &MisplacedWords::word_with_sign,
+          &MisplacedWords::changed_wrongly,     &MisplacedWords::repeat_how_often,
+          &MisplacedWords::resume_after,        &MisplacedWords::modifier_behind_do,
+          &MisplacedWords::otherwise,           &MisplacedWords::more_than})
       if (auto edit = (this->*habit)()) return edit;
     return std::nullopt;
   }
@@ -602,19 +584,6 @@ private:
     return change(stop_, 0, {missing(Kinds::BY, stop_), missing(Kinds::QUANTITY, stop_)});
   }
 
-  // `PICK ONE`, and then commands
-  std::optional<Edit> pick_without_option() {
-    if (!begins_with(Kinds::PICK) || stop_ != statement_ + 2 || !is(stop_ - 1, Kinds::ONE) ||
-        !is(stop_, Kinds::NEWLINE))
-      return std::nullopt;
-    const std::size_t first = after_line_ends(stop_);
-    if (first == tokens_.size() || is_one_of(tokens_[first].kind, {Kinds::OPTION, Kinds::END}))
-      return std::nullopt;
-    report(Code::E0008, "`PICK ONE` takes an `OPTION` for each choice", span(statement_, stop_))
-        .helps("write `OPTION` on a line of its own before the commands of each choice");
-    return change(first, 0, {missing(Kinds::OPTION, first), missing(Kinds::NEWLINE, first)});
-  }
-
   // `REPEAT`
   std::optional<Edit> repeat_how_often() {
     if (!begins_with(Kinds::REPEAT) || stop_ != statement_ + 1 || !is(stop_, Kinds::NEWLINE))
@@ -622,72 +591,6 @@ private:
     report(Code::E0008, "this does not say how often to repeat", tokens_[statement_].span)
         .helps("write `REPEAT 3 TIMES`, `REPEAT WHILE` and a condition, or `REPEAT FOREVER`");
     return change(stop_, 0, {missing(Kinds::QUANTITY, stop_), missing(Kinds::TIMES, stop_)});
-  }
-
-  // `REPEAT UNTIL touch LEVEL < 3`, `REPEAT 3x`
-  std::optional<Edit> repeat_as_spoken() {
-    if (!begins_with(Kinds::REPEAT) || stop_ == tokens_.size()) return std::nullopt;
-    const Span here = tokens_[stop_].span;
-    if (stop_ == statement_ + 1 && is(stop_, Kinds::UNTIL)) {
-      const std::string asked = text(stop_ + 1, end_);
-      report(Code::E0001, "`REPEAT UNTIL` is written `REPEAT WHILE NOT` in RSL", here)
-          .helps("write `REPEAT WHILE NOT (" + asked + ")`")
-          .fix(span(stop_, end_), "WHILE NOT (" + asked + ")", Applicability::likely);
-      Tokens tokens = {{Kinds::WHILE, here}, {Kinds::NOT, here}, {Kinds::OPEN, here}};
-      tokens.insert(tokens.end(), at(stop_ + 1), at(end_));
-      tokens.push_back({Kinds::CLOSE, here});
-      return change(stop_, end_ - stop_, tokens);
-    }
-    if (stop_ != statement_ + 2 || !is(stop_ - 1, Kinds::QUANTITY)) return std::nullopt;
-    Span number = tokens_[stop_ - 1].span;
-    if (ascii::lower(text(stop_ - 1).back()) != 'x') return std::nullopt;
-    --number.end;
-    const std::string better = std::string(source_.text(number)) + " TIMES";
-    report(Code::E0001, quote(stop_ - 1) + " is written `" + better + "` in RSL",
-           tokens_[stop_ - 1].span)
-        .fix(tokens_[stop_ - 1].span, better, Applicability::likely);
-    return change(stop_ - 1, 1, {{Kinds::QUANTITY, number}, missing(Kinds::TIMES, stop_)});
-  }
-
-  // `EVERY TIME touch LEVEL > 3`
-  std::optional<Edit> every_time() {
-    if (!begins_with(Kinds::EVERY) || !is_name(statement_ + 1, "TIME") || stop_ < statement_ + 2)
-      return std::nullopt;
-    const Span both = span(statement_, statement_ + 2);
-    report(Code::E0001, "`EVERY TIME` is written `WHEN` in RSL", both)
-        .fix(both, "WHEN", Applicability::likely);
-    return change(statement_, 2, {{Kinds::WHEN, both}});
-  }
-
-  // `touch LEVEL > 3 WITHIN 5s THEN touch LEVEL < 2`
-  std::optional<Edit> within_before_then() {
-    if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY) ||
-        !is(stop_ + 2, Kinds::THEN) || !asks_before(stop_))
-      return std::nullopt;
-    const std::size_t end = statement_end_from(stop_ + 3);
-    const std::string better = text(stop_ + 2, end) + " " + text(stop_, stop_ + 2);
-    report(Code::E0001, "`WITHIN` and its time go to the end of the condition",
-           span(stop_, stop_ + 2))
-        .helps("write `" + better + "`")
-        .fix(span(stop_, end), better, Applicability::likely);
-    Tokens tokens(at(stop_ + 2), at(end));
-    tokens.insert(tokens.end(), at(stop_), at(stop_ + 2));
-    return change(stop_, end - stop_, tokens);
-  }
-
-  // Lines of a CHECK: `far ELSE`, `far > 30cm`
-  std::optional<Edit> band_as_condition() {
-    if (!is(0, Kinds::CHECK) || stop_ == begin_ || begin_ == 0) return std::nullopt;
-    const bool is_else = is(stop_, Kinds::ELSE) && stop_ + 1 == end_;
-    const bool above = is(stop_, Kinds::GREATER) || is(stop_, Kinds::GREATER_EQUAL);
-    const bool below = is(stop_, Kinds::LESS) || is(stop_, Kinds::LESS_EQUAL);
-    if (!is_else && !above && !below) return std::nullopt;
-    const std::string better = is_else ? "OTHERWISE" : above ? "ABOVE" : "BELOW";
-    const TokenKind kind = is_else ? Kinds::OTHERWISE : above ? Kinds::ABOVE : Kinds::BELOW;
-    const Span here = tokens_[stop_].span;
-    report(Code::E0001, "a line of a CHECK says `" + better + "`, not " + quote(stop_), here)
-        .fix(here, better, Applicability::likely);
-    return change(stop_, 1, {{kind, here}});
   }
 
   // `RESUME AFTER 2s`

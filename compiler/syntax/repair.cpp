@@ -83,8 +83,8 @@ std::optional<Edit> known_mistake(const Tokens& tokens, const Attempt& failure,
                                   Diagnostics& diagnostics) {
   if (auto joined = explain_joined_command(tokens, source, failure, examples, diagnostics))
     return joined;
-  for (const auto explain_one : {explain_wrong_form, explain_unit_apart, explain_misplaced_word,
-                                 explain_foreign_habit, explain_habit})
+  for (const auto explain_one : {explain_spoken_form, explain_wrong_form, explain_unit_apart,
+                                 explain_misplaced_word, explain_foreign_habit, explain_habit})
     if (auto habit = explain_one(tokens, source, failure, diagnostics)) return habit;
   return explain_sentence(tokens, source, failure, examples, diagnostics);
 }

@@ -276,9 +276,7 @@ private:
 
   // `WHEN touch LEVEL > 3 WITHIN 3s`
   std::optional<Edit> within_alone() {
-    if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY) ||
-        is(stop_ + 2, Kinds::THEN))
-      return std::nullopt;
+    if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY)) return std::nullopt;
     if (is(stop_ - 1, Kinds::AND)) return within_first();
     std::size_t first = stop_;
     while (first > 0 && !begins_question(tokens_[first - 1].kind))

@@ -431,8 +431,7 @@ private:
     if (note.empty() || !out_of_range_.insert(channel).second) return;
     scenario_.notes.push_back(fmt::format(
         "{}:{}: note: {}", in_recording_ == nullptr ? file_ : in_recording_->file,
-        in_recording_ == nullptr ? line_of(stimulus_) : in_recording_->cells.line,
-        note));
+        in_recording_ == nullptr ? line_of(stimulus_) : in_recording_->cells.line, note));
   }
 
   const std::string& file_;
