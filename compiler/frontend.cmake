@@ -44,7 +44,6 @@ target_sources(robosync_compiler PRIVATE
   ${generated}/grammar/rsl_lexer.cpp
   source/source_file.cpp
   source/utf8.cpp
-  diagnostics/nearest.cpp
   diagnostics/plain_text.cpp
   syntax/blocks.cpp
   syntax/builder.cpp
@@ -61,6 +60,7 @@ target_sources(robosync_compiler_small PRIVATE
   source/embedded.cpp
   source/json.cpp
   diagnostics/diagnostic.cpp
+  diagnostics/nearest.cpp
   diagnostics/render_human.cpp
   diagnostics/render_json.cpp
   diagnostics/sarif.cpp
