@@ -93,6 +93,7 @@ target_sources(robosync_compiler_small PRIVATE
   sema/statements.cpp
   sema/texts.cpp
   sema/timers.cpp
+  sema/unknown_names.cpp
   sema/unknown_verbs.cpp
   sema/variables.cpp
   sema/waiting_commands.cpp

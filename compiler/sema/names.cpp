@@ -174,17 +174,6 @@ bool Names::report_known(const ast::Name& name) {
   return true;
 }
 
-// `MOVE arm TO SLOWLY`
-bool Names::help_with_word(Diagnostic& d, const ast::Name& name) const {
-  for (const ActuatorConfig& actuator : robot_.actuators)
-    for (const WordConfig& word : actuator.words) {
-      if (word.text || !same_name(word.name, name.text)) continue;
-      d.helps(name.shown() + " is a word of " + actuator.name.shown() + ", not a number");
-      return true;
-    }
-  return false;
-}
-
 void Names::report_unknown(const ast::Operand& operand) {
   if (report_missing(operand)) return;
   if (!operand.channel && report_known(operand.name)) return;
@@ -195,7 +184,7 @@ void Names::report_unknown(const ast::Operand& operand) {
   if (!operand.channel && help_with_word(d, operand.name)) return;
   const std::size_t most = joined_.size() + constants_.size() + variables_.size();
   if (!diagnostics_.may_search(robot_.sensors.size() + (operand.channel ? 0 : most))) return;
-  if (help_with_sensor(d, operand.name)) return;
+  if (help_with_sensor(d, operand.name) || help_with_parts(d, operand)) return;
   std::vector<std::string> candidates;
   for (const SensorConfig& sensor : robot_.sensors) {
     candidates.push_back(sensor.name.text);

@@ -187,6 +187,7 @@ private:
   bool report_missing(const ast::Operand& operand);
   void report_unknown(const ast::Operand& operand);
   bool help_with_word(Diagnostic& d, const ast::Name& name) const;
+  bool help_with_parts(Diagnostic& d, const ast::Operand& operand) const;
   bool report_known(const ast::Name& name);
 
   const Robot& robot_;

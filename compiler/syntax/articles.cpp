@@ -17,11 +17,11 @@ bool is_article(const Tokens& tokens, std::size_t at, const SourceFile& source) 
   return tokens[at].kind == Kinds::NAME && has_word(kArticles, source.text(tokens[at].span));
 }
 
-// A row of a CHECK begins with its word, and a STATE has words behind signs.
+// A row of a CHECK begins with its word, a STATE has words behind signs, and a DEFINE names its values.
 bool is_declared(const Tokens& tokens, std::size_t at) {
   if (at == 0 || starts_line(tokens, at)) return true;
   const TokenKind before = tokens[at - 1].kind;
-  return is_one_of(before, {Kinds::COLON, Kinds::COMMA}) ||
+  return is_one_of(before, {Kinds::COLON, Kinds::COMMA, Kinds::WITH}) ||
          declares(before, at + 1 < tokens.size() ? tokens[at + 1].kind : Kinds::NEWLINE);
 }
 

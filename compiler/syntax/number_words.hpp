@@ -1,5 +1,7 @@
-// Numbers in words, `3 TIMES` as `THREE TIMES` or `TWICE`, `2s` as `two seconds`. RSL has digits.
+// Numbers in words: `THREE TIMES WITHIN 2s`, `TWICE WITHIN 2s`, `FOR two seconds`. RSL has digits.
 #pragma once
+
+#include <string_view>
 
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/source_file.hpp"
@@ -7,7 +9,10 @@
 
 namespace robosync::compiler {
 
-// Reports each and makes it a number.
+// 3 for `three`, in any case; 0: it is none from 1 to 10.
+[[nodiscard]] unsigned number_in_words(std::string_view word);
+
+// Reports each that cannot be a name where it stands, and makes it a number.
 void mend_number_words(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler
