@@ -10,7 +10,6 @@ namespace robosync::companion {
 namespace {
 
 constexpr std::string_view kFirstLine = "robosync words 2";
-constexpr std::string_view kFirstLineOfAny = "robosync words ";
 constexpr std::string_view kOldFirstLine = "robosync words 1";
 constexpr std::string_view kHex = "0123456789abcdef";
 // A level is a character: these and the next 63.

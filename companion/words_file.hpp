@@ -21,6 +21,7 @@ constexpr std::size_t kMostWords = 24, kMostSamples = 8;  // samples of each wor
 constexpr std::size_t kLeastFrames = OWN_WORDS_LEAST_FRAMES, kMostFrames = OWN_WORDS_MOST_FRAMES;
 constexpr std::size_t kLongestName = 31;
 constexpr std::size_t kLargestFile = 1 << 20;
+constexpr std::string_view kFirstLineOfAny = "robosync words ";  // of a file of any version
 constexpr std::string_view kNoWord = "none";  // the value when none of them was heard
 
 struct TaughtWord {

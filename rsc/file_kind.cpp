@@ -6,7 +6,9 @@
 #include <fstream>
 #include <string>
 
+#include "companion/words_file.hpp"
 #include "compiler/source/ascii.hpp"
+#include "rsc/device/owner_key.hpp"
 
 namespace robosync::tool {
 namespace {
@@ -42,9 +44,8 @@ struct Beginning {
   std::string_view text;
   FileKind kind;
 };
-// The words of a key are those of device/owner_key.cpp, those of a file of words stand in companion/words_file.cpp.
-constexpr std::array kBeginnings = {Beginning{"robosync owner's key", FileKind::key},
-                                    Beginning{"robosync words ", FileKind::words},
+constexpr std::array kBeginnings = {Beginning{kKeyWords, FileKind::key},
+                                    Beginning{companion::kFirstLineOfAny, FileKind::words},
                                     Beginning{"\x7F"
                                               "ELF",
                                               FileKind::library},

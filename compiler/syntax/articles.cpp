@@ -17,11 +17,15 @@ bool is_article(const Tokens& tokens, std::size_t at, const SourceFile& source) 
   return tokens[at].kind == Kinds::NAME && has_word(kArticles, source.text(tokens[at].span));
 }
 
-// A row of a CHECK begins with its word, a STATE has words behind signs, and a DEFINE names its values.
-bool is_declared(const Tokens& tokens, std::size_t at) {
+// A row of a CHECK begins with its word, a STATE has words behind signs, and a DEFINE names its values. Where a value stands, it
+// may be a name of a module.
+bool may_be_name(const Tokens& tokens, std::size_t at) {
   if (at == 0 || starts_line(tokens, at)) return true;
   const TokenKind before = tokens[at - 1].kind;
-  return is_one_of(before, {Kinds::COLON, Kinds::COMMA, Kinds::WITH}) ||
+  return is_preposition(before) || is_relation(before) ||
+         is_one_of(before,
+                   {Kinds::COLON, Kinds::COMMA, Kinds::WITH, Kinds::OPEN, Kinds::PLUS, Kinds::MINUS,
+                    Kinds::STAR, Kinds::SLASH, Kinds::EVERY, Kinds::WITHIN}) ||
          declares(before, at + 1 < tokens.size() ? tokens[at + 1].kind : Kinds::NEWLINE);
 }
 
@@ -41,11 +45,12 @@ void report(const std::vector<Span>& places, const SourceFile& source, Diagnosti
 
 }  // namespace
 
-void leave_out_articles(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
+void leave_out_articles(Tokens& tokens, const SourceFile& source, const Vocabulary* robot,
+                        Diagnostics& diagnostics) {
   std::vector<Span> places;
   for (std::size_t at = 0; at + 1 < tokens.size(); ++at) {
     if (!is_article(tokens, at, source)) continue;
-    if (is_declared(tokens, at)) return;
+    if (may_be_name(tokens, at) || knows(robot, source.text(tokens[at].span))) return;
     if (tokens[at + 1].kind == Kinds::NAME) places.push_back(tokens[at].span);
   }
   if (places.empty()) return;

@@ -84,10 +84,7 @@ private:
     return meant == nullptr || is_name(text(at)) ? nullptr : meant;
   }
   [[nodiscard]] bool is_name(std::string_view word) {
-    using Part = Vocabulary::Part;
-    if (robot_ != nullptr && (!robot_->part(Part::condition, word).empty() ||
-                              !robot_->part(Part::actuator, word).empty()))
-      return true;
+    if (knows(robot_, word)) return true;
     if (declared_.empty()) note_declared();
     return declared_.contains(lower(word));
   }

@@ -23,7 +23,8 @@ unsigned place_in(const std::string_view (&words)[n], std::string_view word) {
 
 class NumberWords {
 public:
-  NumberWords(const Tokens& tokens, const SourceFile& source) : tokens_(tokens), source_(source) {}
+  NumberWords(const Tokens& tokens, const SourceFile& source, const Vocabulary* robot)
+      : tokens_(tokens), source_(source), robot_(robot) {}
 
   // How many tokens stand for a number here; 0: none. After it, better() is what to write.
   [[nodiscard]] std::size_t read(std::size_t at) {
@@ -34,7 +35,7 @@ public:
       return found(std::to_string(times) + " TIMES", 1);
     counts_ = false;
     const unsigned number = number_in_words(word);
-    if (number == 0) return 0;
+    if (number == 0 || knows(robot_, word)) return 0;
     if (is_behind_condition(at) && is(at + 1, Kinds::TIMES) && is(at + 2, Kinds::WITHIN))
       return found(std::to_string(number), 1);
     const Unit* const unit = is(at + 1, Kinds::NAME) ? find_unit(text(at + 1)) : nullptr;
@@ -67,6 +68,7 @@ private:
 
   const Tokens& tokens_;
   const SourceFile& source_;
+  const Vocabulary* robot_;
   std::string better_;
   bool counts_ = false;
 };
@@ -77,9 +79,10 @@ unsigned number_in_words(std::string_view word) {
   return place_in(kNumbers, word);
 }
 
-void mend_number_words(Tokens& tokens, const SourceFile& source, Diagnostics& diagnostics) {
+void mend_number_words(Tokens& tokens, const SourceFile& source, const Vocabulary* robot,
+                       Diagnostics& diagnostics) {
   Rewritten rewritten(tokens);
-  NumberWords words(tokens, source);
+  NumberWords words(tokens, source, robot);
   for (std::size_t at = 0; at < tokens.size(); ++at) {
     const std::size_t count = words.read(at);
     if (count == 0) {

@@ -129,8 +129,8 @@ public:
     }
     if (!is_plain_text(sources_, file_, Code::E0002, diagnostics_)) return {};
     tokens_ = lex_but_foreign_text(source_, file_, robot_, diagnostics_);
-    leave_out_articles(tokens_, source_, diagnostics_);
-    mend_number_words(tokens_, source_, diagnostics_);
+    leave_out_articles(tokens_, source_, robot_, diagnostics_);
+    mend_number_words(tokens_, source_, robot_, diagnostics_);
     find_strange_lines();
     mend_foreign_words(tokens_, source_, robot_, diagnostics_);
     mend_indented_blocks(tokens_, source_, diagnostics_);

@@ -92,15 +92,17 @@ private:
     return {begin.file, begin.begin, begin.begin + static_cast<std::uint32_t>(text.size())};
   }
 
-  // Does the word before the comma stand behind a SAY only?
+  // Can the word before the comma be no name? A module may declare others.
   [[nodiscard]] bool is_new(std::string_view said) {
     constexpr std::size_t most = 20;  // searches of the whole text
     if (++searches_ > most) return true;
     const std::string_view word = said.substr(0, said.find(','));
+    if (knows(robot_, word)) return false;
     bool is_said = false;
     return std::ranges::none_of(tokens_, [&](const Token& token) {
       const bool is_name = token.kind == Kinds::NAME;
-      const bool is_other = is_name && !is_said && source_.text(token.span) == word;
+      const bool is_other =
+          token.kind == Kinds::USE || (is_name && !is_said && source_.text(token.span) == word);
       is_said = is_name && ascii::same(source_.text(token.span), "SAY");
       return is_other;
     });

@@ -36,4 +36,10 @@ public:
                                             bool places) const = 0;
 };
 
+// Is it a sensor, an actuator or a group? `robot` may be null: then nothing is.
+[[nodiscard]] inline bool knows(const Vocabulary* robot, std::string_view name) {
+  return robot != nullptr && (!robot->part(Vocabulary::Part::condition, name).empty() ||
+                              !robot->part(Vocabulary::Part::actuator, name).empty());
+}
+
 }  // namespace robosync::compiler

@@ -21,9 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kWords = "robosync owner's key, secret\n";
 constexpr std::size_t kDigits = 64;
-constexpr std::size_t kLength = kWords.size() + kDigits + 1;
+constexpr std::size_t kLength = kKeyWords.size() + kDigits + 1;
 
 [[noreturn]] void fail(const fs::path& file, const std::string& why) {
   throw Failure(Exit::outside, file.string() + ": " + why);
@@ -115,7 +114,7 @@ std::unique_ptr<const OwnerKey> OwnerKey::make(const fs::path& file) {
   Seed seed;
   randombytes_buf(seed.bytes.data(), seed.bytes.size());
   Text text;
-  char* const digits = std::copy(kWords.begin(), kWords.end(), text.bytes.data());
+  char* const digits = std::copy(kKeyWords.begin(), kKeyWords.end(), text.bytes.data());
   sodium_bin2hex(digits, kDigits + 1, seed.bytes.data(), seed.bytes.size());
   digits[kDigits] = '\n';
   const bool written =
@@ -139,8 +138,9 @@ std::unique_ptr<const OwnerKey> OwnerKey::read(const fs::path& file) {
   Seed seed;
   std::size_t bytes = 0;
   const bool good =
-      count == ssize_t{kLength} && std::string_view(text.bytes.data(), kWords.size()) == kWords &&
-      sodium_hex2bin(seed.bytes.data(), seed.bytes.size(), text.bytes.data() + kWords.size(),
+      count == ssize_t{kLength} &&
+      std::string_view(text.bytes.data(), kKeyWords.size()) == kKeyWords &&
+      sodium_hex2bin(seed.bytes.data(), seed.bytes.size(), text.bytes.data() + kKeyWords.size(),
                      kDigits, nullptr, &bytes, nullptr) == 0 &&
       bytes == seed.bytes.size();
   if (!good) fail(file, "this is not a key from rsc keygen");
