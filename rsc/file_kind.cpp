@@ -8,7 +8,6 @@
 
 #include "companion/words_file.hpp"
 #include "compiler/source/ascii.hpp"
-#include "rsc/device/owner_key.hpp"
 
 namespace robosync::tool {
 namespace {

@@ -24,6 +24,9 @@ enum class FileKind : std::uint8_t {
   sound
 };
 
+// The first line of an owner's key.
+inline constexpr std::string_view kKeyWords = "robosync owner's key, secret\n";
+
 // The text may be incomplete or wrong: its beginning is enough. Never `program` or `source`, which only
 // the file name tells.
 [[nodiscard]] FileKind kind_of_text(std::string_view text);

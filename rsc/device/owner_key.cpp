@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "rsc/failure.hpp"
+#include "rsc/file_kind.hpp"
 
 namespace robosync::tool {
 namespace {

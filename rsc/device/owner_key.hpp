@@ -7,14 +7,10 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "link/messages.hpp"
 
 namespace robosync::tool {
-
-// The first line of its file.
-inline constexpr std::string_view kKeyWords = "robosync owner's key, secret\n";
 
 // The default path of the key: in the user's configuration folder (XDG).
 [[nodiscard]] std::filesystem::path default_key_file();
