@@ -8,6 +8,9 @@ namespace robosync::vm {
 
 // The image that is verified, and the reason to refuse it. The parts return false if they find one.
 struct Verification {
+  // Has a constructor, because an aggregate would be zeroed first.
+  Verification(const Image& of, const Limits& most) : image(of), limits(most) {}
+
   const Image& image;
   const Limits& limits;
   Verdict verdict = {};

@@ -120,7 +120,7 @@ bool check_rule(Frame& frame, const Rule& rule, RuleCost& cost) {
 }
 
 Verdict verify(std::span<const std::byte> bytes, const Limits& limits, Image& image) {
-  Verification verification{image, limits};
+  Verification verification(image, limits);
   verification.verdict.refusal = check_header(bytes, limits, image);
   bool good = verification.verdict.ok() && check_records(verification) && check_code(verification);
   if (good && verification.step_cost != image.header->step_cost)
@@ -133,7 +133,7 @@ std::uint32_t step_cost(const Image& image) {
   Limits limits;
   limits.step_cost = UINT32_MAX;
   limits.frame_cells = limits.timer_words = limits.samples = UINT16_MAX;
-  Verification verification{image, limits};
+  Verification verification(image, limits);
   if (!check_records(verification) || !check_code(verification)) return 0;
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(verification.step_cost, UINT32_MAX));
 }

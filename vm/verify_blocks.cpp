@@ -5,9 +5,6 @@
 namespace robosync::vm {
 namespace {
 
-// No cost may exceed this, so that the sum of a few costs fits 32 bits.
-constexpr std::uint32_t kMaxCost = 1U << 29;
-
 // How far the word jumps, ahead or back.
 std::size_t distance_of(Word word, Traits traits) {
   return traits.operand(2) == Operand::ahead8 ? operand_c(word) : operand_wide(word);
@@ -24,13 +21,6 @@ Refusal Blocks::arrive(std::size_t at) {
     spent_.output = std::max<std::uint32_t>(spent_.output, top().output);
   }
   return Refusal::none;
-}
-
-Refusal Blocks::spend(std::uint32_t cost, std::uint32_t output) {
-  spent_.cost += cost;
-  spent_.output += output;
-  if (spent_.output > kMaxResponseOutput) return Refusal::too_much_output;
-  return spent_.cost > kMaxCost ? Refusal::too_costly : Refusal::none;
 }
 
 Refusal Blocks::flow(std::size_t at, Word word, Traits traits) {

@@ -19,6 +19,9 @@
 
 namespace robosync::vm {
 
+// No cost may exceed this, so that the sum of a few costs fits 32 bits.
+inline constexpr std::uint32_t kMaxCost = 1U << 29;
+
 class Blocks {
 public:
   // For the object that ends with the word at `last`.
@@ -31,7 +34,12 @@ public:
   // Ends the blocks that end before the word at `at`.
   [[nodiscard]] Refusal arrive(std::size_t at);
   // Counts the cost and the output of a word with valid operands.
-  [[nodiscard]] Refusal spend(std::uint32_t cost, std::uint32_t output);
+  [[nodiscard]] Refusal spend(std::uint32_t cost, std::uint32_t output) {
+    spent_.cost += cost;
+    spent_.output += output;
+    if (spent_.output > kMaxResponseOutput) return Refusal::too_much_output;
+    return spent_.cost > kMaxCost ? Refusal::too_costly : Refusal::none;
+  }
   // Call this after spend() for a word that begins or ends a block, or waits.
   [[nodiscard]] Refusal flow(std::size_t at, Word word, Traits traits);
 
