@@ -23,7 +23,7 @@ from workloads import PAPER, W3
 
 COMMAND = "robosync::drivers::servo::start("
 RELEASE = "robosync::drivers::servo::release("
-RULE = "robosync::layers::BehaviorLayer::evaluate_rule("
+RULE = "robosync::layers::BehaviorLayer::judge_rule("
 SIGNAL = "robosync::kernel::Kernel::signal("  # to an actuator's thread, when a command is in its queue
 RESPONSE = "robosync::layers::BehaviorLayer::run_response("
 CONCLUDE = "robosync::layers::ProcessingLayer::conclude("  # stages what the response has SET

@@ -72,14 +72,6 @@ std::string_view Image::string(std::uint16_t offset) const {
           nul == nullptr ? room : static_cast<std::size_t>(static_cast<const char*>(nul) - text)};
 }
 
-std::uint32_t Image::target_mask(std::uint8_t target) const {
-  if ((target & kGroupBit) != 0) {
-    const std::size_t group = target & ~unsigned{kGroupBit};
-    return group < groups.size() ? groups[group].members : 0;
-  }
-  return target < actuators.size() && target < kMaxActuators ? std::uint32_t{1} << target : 0;
-}
-
 std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t seed) {
   std::uint32_t crc = ~seed;
   const std::byte* next = bytes.data();

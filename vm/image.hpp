@@ -69,6 +69,8 @@ enum class Param : std::uint8_t {
 #undef PARAM
   count_
 };
+// Values of parameters, by Param.
+using Params = std::array<Value, static_cast<std::size_t>(Param::count_)>;
 
 // These parameters carry the values for the {} places of a text that a command says: verbs that play or say do not use them
 // otherwise.
@@ -419,7 +421,13 @@ struct Image {
     return !behaviors.empty() && behaviors[kSafetyBehavior].priority == kSafetyPriority;
   }
   // The mask of the actuators that the target operand of a CMD names.
-  std::uint32_t target_mask(std::uint8_t target) const;
+  [[gnu::always_inline]] std::uint32_t target_mask(std::uint8_t target) const {
+    if ((target & kGroupBit) != 0) {
+      const std::size_t group = target & ~unsigned{kGroupBit};
+      return group < groups.size() ? groups[group].members : 0;
+    }
+    return target < actuators.size() && target < kMaxActuators ? std::uint32_t{1} << target : 0;
+  }
 };
 
 // Sections in the order of the image; also names the place in a verifier's refusal.

@@ -9,6 +9,7 @@
 #include "runtime-m4/boards/board.hpp"
 #include "runtime-m4/boards/features.hpp"
 #include "runtime-m4/drivers/motion.hpp"
+#include "runtime-m4/drivers/order.hpp"
 #include "runtime-m4/guard/output_guard.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "vm/image.hpp"
@@ -22,18 +23,6 @@ using ReadFunction = bool (*)(boards::Board& board, const vm::Sensor& sensor,
                               const vm::Channel& channel, std::int32_t& raw);
 
 // --- actuators ---
-
-// What an actuator must do: the parameters are known values inside the actuator's range and limits.
-struct Order {
-  vm::Action action = vm::Action::stop;
-  std::uint8_t given = 0;  // bit p: params[p] is given; the others are undefined
-  std::array<vm::Value, static_cast<std::size_t>(vm::Param::count_)> params;
-
-  bool has(vm::Param param) const { return (given >> static_cast<unsigned>(param) & 1) != 0; }
-  vm::Value get(vm::Param param, vm::Value otherwise) const {
-    return has(param) ? params[static_cast<std::size_t>(param)] : otherwise;
-  }
-};
 
 // What a driver stores about its actuator between calls.
 struct ActuatorState {

@@ -244,8 +244,8 @@ private:
   [[gnu::cold, gnu::noinline]] void disarm(Thread& thread);
   void block(Thread& thread, Events mask);
   void take_or_block(port::CallFrame& call);
-  [[gnu::cold, gnu::noinline]] void report();
-  [[gnu::cold]] void rest(Events mask);
+  void report();
+  void rest(Events mask);
   void make_ready(Thread& thread);
   [[gnu::cold]] void make_unready(Thread& thread);
   [[gnu::noinline]] void wake_due();

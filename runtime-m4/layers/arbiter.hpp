@@ -71,7 +71,18 @@ public:
 
   // It takes nothing from anybody, like most claims: so it wins, and ends nothing.
   [[gnu::always_inline]] bool is_free(const Claim& claim) const {
-    return has_all_free(claim) && !works(claim.rule);
+    return is_free(claim.actuators) && !works(claim.rule);
+  }
+  // Nobody holds one of them.
+  [[gnu::always_inline]] bool is_free(ActuatorMask actuators) const {
+    return (actuators & (owned_ | halted_)) == 0;
+  }
+  // Certainly wins a trigger of `rule` for this side: it needs nobody's actuators but those of its own other side.
+  [[gnu::always_inline]] bool is_plain(unsigned rule, Side side, ActuatorMask actuators) const {
+    if (!runs(rule)) return is_free(actuators);
+    const bool again = works(rule) && this->side(rule) == side;
+    const ActuatorMask others = owned_ & ~holdings_[rule].actuators;
+    return !again && (actuators & (others | halted_)) == 0;
   }
   [[nodiscard]] bool wins(const Claim& claim) const {
     return is_free(claim) || decide(claim).wins();
@@ -79,7 +90,9 @@ public:
   [[nodiscard]] Decision decide(const Claim& claim) const {
     const bool again = works(claim.rule) && side(claim.rule) == claim.side;
     if (again && !claim.restarting) return {.outcome = Outcome::ignored, .owner = claim.behavior};
-    if (has_all_free(claim)) [[likely]]
+    // Each actuator has one owner, so its own rule may hold all that are not free.
+    const ActuatorMask mine = runs(claim.rule) ? holdings_[claim.rule].actuators : 0;
+    if (is_free(claim.actuators & ~mine) && (claim.actuators & halted_) == 0) [[likely]]
       return {};
     return decide_among_owners(claim);
   }
@@ -111,9 +124,6 @@ public:
   ActuatorMask owned() const { return owned_; }  // by all running rules; each has one owner
 
 private:
-  [[gnu::always_inline]] bool has_all_free(const Claim& claim) const {
-    return (claim.actuators & (owned_ | halted_)) == 0;
-  }
   Decision decide_among_owners(const Claim& claim) const;
   bool may_take(const Claim& claim, unsigned from) const;
 

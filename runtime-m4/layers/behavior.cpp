@@ -105,14 +105,10 @@ kernel::Thread* BehaviorLayer::blocked_at_work(const kernel::Thread& step_thread
 }
 
 // The behaviour could say so of any of its own rules that does not cool down, just as it could let it trigger.
-bool BehaviorLayer::sole_claim_of(unsigned behavior, Claim& claim) const {
-  const Result& result = *workspace_.result;
-  if (result.there != Result::kBegan) return false;
-  const RuleRange rules = program_->rules_of(behavior);
-  const unsigned rule = result.rule;
-  if (rule < rules.first || rule >= rules.end) return false;
-  const Side side = result.side != 0 ? Side::then : Side::otherwise;
-  return !layers_.triggers.cools(rule, side) &&
+bool BehaviorLayer::sole_claim_of(RuleRange rules, Claim& claim) const {
+  const unsigned rule = workspace_.result->rule;
+  Side side{};
+  return rule >= rules.first && rule < rules.end && has_begun(rule, side) &&
          claim_for(rule, side, !layers_.triggers.has_triggered(rule), claim);
 }
 
@@ -180,7 +176,7 @@ void BehaviorLayer::conclude(unsigned rule) {
   Trace& trace = layers_.trace;
   if (waited && moved) trace.emit(EventKind::go_on, trace.step(), rule);
   if (result.zero_divide != 0) trace.emit(EventKind::zero_divide, trace.step(), rule);
-  if (result.words != 0) put_out(result.words, layers_.arbiter.holding(rule).actuators);
+  if (result.words != 0) put_out(layers_.arbiter.holding(rule).actuators);
   if ((result.assigned | result.shifted) != 0) stage_writes(behavior);
   point.time = time_of(rule, pause, waited);
   point.pause = pause;
@@ -196,38 +192,39 @@ void BehaviorLayer::stage_writes(unsigned behavior) {
                           program_->image.behaviors[behavior], *snapshot_);
 }
 
+// A command to a group goes to each member. A parameter that the program gives overrides its word's, which is always known.
+[[gnu::always_inline]] inline void BehaviorLayer::stage(vm::Output said, ActuatorMask declared) {
+  const vm::Image& image = program_->image;
+  drivers::Order& order = command_.order_;
+  if (said.verb >= image.verbs.size()) return;
+  order.action = image.verbs[said.verb].action;
+  order.given = said.given;
+  command_.complete_ = order.is_known();
+  if (said.word != vm::kNoWord) {
+    if (said.word >= image.words.size()) return;
+    const vm::WordEntry& word = image.words[said.word];
+    if (!order.has(word.param)) order.give(word.param, word.value);
+  }
+  command_.verb_ = said.verb;
+  command_.word_ = said.word;
+  command_.given_ = said.given;
+  layers_.control.stage(command_, image.target_mask(said.target) & declared);
+}
+
 // Commands only reach the actuators that the response has declared, whatever its thread says.
-[[gnu::noinline]] void BehaviorLayer::put_out(std::size_t words, ActuatorMask declared) {
-  vm::OutputReader reader(workspace_.output.first(std::min(words, workspace_.output.size())));
-  Command command;
-  while (reader.next(command.said_)) {
-    if (command.said_.kind == vm::OutputKind::command) {
-      stage(command, declared);
+void BehaviorLayer::put_out(ActuatorMask declared) {
+  const std::size_t words = std::exchange(workspace_.result->words, std::uint16_t{0});
+  vm::Params& params = command_.order_.params;
+  vm::OutputReader reader(workspace_.output.first(std::min(words, workspace_.output.size())),
+                          params);
+  vm::Output said;
+  while (reader.next(said)) {
+    if (said.kind == vm::OutputKind::command) {
+      stage(said, declared);
     } else {
-      report_text(layers_.trace, command.said_, layers_.trace.step());
+      report_text(layers_.trace, said, params, layers_.trace.step());
     }
   }
-}
-
-// A command to a group goes to each member.
-void BehaviorLayer::stage(Command& command, ActuatorMask declared) {
-  const vm::Image& image = program_->image;
-  if (command.verb() >= image.verbs.size()) return;
-  command.action_ = image.verbs[command.verb()].action;
-  command.known_ = command.given();
-  if (command.word() != vm::kNoWord) {
-    if (command.word() >= image.words.size()) return;
-    add_word(image.words[command.word()], command);
-  }
-  layers_.control.stage(command, image.target_mask(command.said_.target) & declared);
-}
-
-// A parameter that the program gives overrides its word's.
-void BehaviorLayer::add_word(const vm::WordEntry& word, Command& command) {
-  const auto p = static_cast<unsigned>(word.param);
-  if (has<unsigned>(command.known_, p)) return;
-  command.said_.params[p] = word.value;
-  command.known_ = static_cast<std::uint8_t>(command.known_ | 1U << p);
 }
 
 void BehaviorLayer::retire(unsigned behavior) {
@@ -236,11 +233,6 @@ void BehaviorLayer::retire(unsigned behavior) {
     layers_.triggers.retire(wiring.first_rule + r);
   retired_ |= bit<BehaviorMask>(behavior);
   if (behavior == released_) is_released_ = false;
-}
-
-std::uint16_t BehaviorLayer::response_of(unsigned rule, Side side) const {
-  const vm::Rule& wiring = program_->image.rules[rule];
-  return side == Side::then ? wiring.then_response : wiring.else_response;
 }
 
 bool BehaviorLayer::claim_of(unsigned rule, Claim& claim, bool& silent) const {
@@ -307,6 +299,9 @@ void BehaviorLayer::run(Unit& unit) {
 void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
   layers_.triggers.begin_sole_turn(rule);
   judge_rule(rule, machine);
+  if (Side side{}; layers_.triggers.fired(rule, side) && !layers_.triggers.is_while(rule) &&
+                   begins_plainly(rule, side))
+    return run_response(machine, rule, side, begin_of(rule, side));
   Claim claim;
   bool silent = false;
   const bool claims =
@@ -320,6 +315,13 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
   } else if (claims && layers_.arbiter.wins(claim)) {
     begin_response(machine, claim);
   }
+}
+
+// The common cases: its response takes actuators from nobody, or only from its own other side.
+[[gnu::always_inline]] inline bool BehaviorLayer::begins_plainly(unsigned rule, Side side) const {
+  return response_of(rule, side) != vm::kNoIndex &&
+         resume_points_[rule].pause == vm::Pause::ended &&
+         layers_.arbiter.is_plain(rule, side, actuators_of(rule, side));
 }
 
 void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {
@@ -336,23 +338,23 @@ void BehaviorLayer::evaluate_rules(const Unit& unit, vm::Machine& machine) {
 }
 
 void BehaviorLayer::judge_rule(unsigned rule, vm::Machine& machine) {
-  switch (program_->image.rules[rule].kind) {
-    case vm::RuleKind::start:
-      layers_.triggers.note(rule);
-      return layers_.triggers.begin(rule);
-    case vm::RuleKind::every:
-      return evaluate_period(rule, machine);
-    case vm::RuleKind::watch:
-      machine.frame[program_->truth_cell[rule]] = evaluate_rule(rule, machine);
-      break;
-    default:
-      const vm::Value condition = evaluate_rule(rule, machine);
-      layers_.triggers.judge(rule, condition, machine.event);
+  const vm::RuleKind kind = program_->image.rules[rule].kind;
+  if (kind == vm::RuleKind::start) {
+    layers_.triggers.note(rule);
+    layers_.triggers.begin(rule);
+  } else if (kind == vm::RuleKind::every) {
+    evaluate_period(rule, machine);
+  } else {
+    const vm::Value condition = evaluate_rule(rule, machine);
+    if (kind != vm::RuleKind::watch)
+      return layers_.triggers.judge(rule, condition, machine.wake, machine.event);
+    machine.frame[program_->truth_cell[rule]] = condition;
+    layers_.triggers.note_past(rule, machine.wake, machine.event);
   }
-  layers_.triggers.note_past(rule, machine.wake, machine.event);
 }
 
-vm::Value BehaviorLayer::evaluate_rule(unsigned rule, vm::Machine& machine) {
+[[gnu::always_inline]] inline vm::Value BehaviorLayer::evaluate_rule(unsigned rule,
+                                                                     vm::Machine& machine) {
   machine.event = false;
   machine.wake = kNever;
   const vm::Value value =

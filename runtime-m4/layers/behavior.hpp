@@ -71,8 +71,26 @@ public:
   // Has the released behaviour not made the call `rest` yet? It may have finished all the same.
   [[nodiscard, gnu::cold]] bool is_at_work() const;
   // True if the behaviour saw in its turn that it has one claim, that this claim wins, and that no
-  // other response of its runs in this step; it has then run the response.
-  bool sole_claim_of(unsigned behavior, Claim& claim) const;
+  // other response of its runs in this step; it has then run the response. `rules`: those that it evaluated.
+  bool sole_claim_of(RuleRange rules, Claim& claim) const;
+  // … of this rule, and for which side.
+  [[gnu::always_inline]] bool has_begun(unsigned rule, Side& side) const {
+    const Result& result = *workspace_.result;
+    side = result.side != 0 ? Side::then : Side::otherwise;
+    return result.there == Result::kBegan && result.rule == rule &&
+           !layers_.triggers.cools(rule, side);
+  }
+  // Does a response for this side begin without taking anything from anybody?
+  [[gnu::always_inline]] bool begins_undisputed(unsigned rule, Side side) const {
+    return response_of(rule, side) != vm::kNoIndex && !layers_.arbiter.runs(rule) &&
+           layers_.arbiter.is_free(actuators_of(rule, side));
+  }
+  // All that the response for this side, which there is, can ever use.
+  [[gnu::always_inline]] ActuatorMask actuators_of(unsigned rule, Side side) const {
+    return program_->image.responses[response_of(rule, side)].actuators;
+  }
+  // Stages the commands of the response that has run, and passes on its texts, if that is not done yet.
+  void put_out(ActuatorMask declared);
   // True if in its sole turn the response that was allowed to go on has done so.
   bool went_on(unsigned rule) const {
     const Result& result = *workspace_.result;
@@ -84,6 +102,7 @@ public:
   const ResumePoint& resume_point(unsigned rule) const { return resume_points_[rule]; }
   void interrupted(unsigned rule) { resume_points_[rule] = {.time = snapshot_->milliseconds()}; }
   [[gnu::cold]] void retire(unsigned behavior);  // its thread was stopped
+  bool is_retired(unsigned behavior) const { return retired_ != 0 && has(retired_, behavior); }
   // The rule's response began in this millisecond, or went on and waits again: it must not do either
   // again in this millisecond. A response that went on to its end may begin again. One that checked its condition and
   // still waits checks it again at each reading, even at a second one in this millisecond.
@@ -114,8 +133,6 @@ public:
 
 private:
   static constexpr kernel::Events kReleased = 1;
-  bool is_retired(unsigned behavior) const { return retired_ != 0 && has(retired_, behavior); }
-
   enum class Task : std::uint8_t { turn, sole_turn, response };
 
   struct Unit {
@@ -125,7 +142,10 @@ private:
   };
 
   [[nodiscard, gnu::cold]] bool start_unit(unsigned behavior, ProgramThreads& threads);
-  std::uint16_t response_of(unsigned rule, Side side) const;
+  [[gnu::always_inline]] std::uint16_t response_of(unsigned rule, Side side) const {
+    const vm::Rule& wiring = program_->image.rules[rule];
+    return side == Side::then ? wiring.then_response : wiring.else_response;
+  }
   unsigned begin_of(unsigned rule, Side side) const {
     return program_->image.responses[response_of(rule, side)].start;
   }
@@ -138,14 +158,13 @@ private:
   vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
   void evaluate_period(unsigned rule, vm::Machine& machine);
   void run_sole_turn(unsigned rule, vm::Machine& machine);
+  bool begins_plainly(unsigned rule, Side side) const;
   bool sole_claim(RuleRange rules, Claim& claim) const;
   bool waits(RuleRange rules) const;
   void begin_response(vm::Machine& machine, const Claim& claim);
   void run_response(vm::Machine& machine, unsigned rule, Side side, unsigned code);
 
-  void put_out(std::size_t words, ActuatorMask declared);
-  void stage(Command& command, ActuatorMask declared);
-  static void add_word(const vm::WordEntry& word, Command& command);
+  void stage(vm::Output said, ActuatorMask declared);
   void stage_writes(unsigned behavior);
   vm::Pause checked_pause(const Result& result) const;
   std::uint32_t ran_at(unsigned rule) const;
@@ -167,6 +186,7 @@ private:
   bool goes_on_ = false;  // for a sole turn
   std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
+  Command command_;  // that is being put out; here, so that no parameters need to be cleared
   std::span<Unit> units_;
   std::span<ResumePoint> resume_points_;
   std::span<std::uint32_t> polls_since_;  // by rule; empty if none polls

@@ -1,63 +1,55 @@
-// Commands on their way to the actuators, in the form that the driver takes: one fixed pool of memory, with a bounded
-// first-in first-out queue in it for each actuator.
+// Commands on their way to the actuators: one fixed pool of memory, with a bounded first-in first-out queue in it for each
+// actuator.
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "runtime-m4/drivers/drivers.hpp"
 #include "runtime-m4/layers/memory.hpp"
+#include "runtime-m4/layers/messages.hpp"
 
 namespace robosync::layers {
 
-// For one actuator and already inside its limits, so nothing is left to compute when its time comes.
-struct QueuedOrder {
-  drivers::Order order;
-  std::uint8_t verb;  // as in Command
-  std::uint8_t word;
-  std::uint8_t given;
-  // No parameter is kUnknown; otherwise the meaning is unclear, and the order is not carried out.
-  bool complete;
-};
-
 class CommandPool {
+  struct Node {
+    Command
+        command;  // already inside its actuator's limits, so nothing is left to compute when its time comes
+    Node* next;
+  };
+
 public:
-  // Aligned, so that it is copied as one word.
-  struct alignas(std::uint32_t) Queue {
-    std::uint8_t first = kNone;
-    std::uint8_t last = kNone;
+  // The last `count - handed` commands are staged: their actuator does not see them before they are handed over.
+  struct Queue {
+    Node* first = nullptr;
+    Node* last = nullptr;
     std::uint8_t count = 0;
+    std::uint8_t handed = 0;
     bool begun = false;  // the first one has begun: it stays as it is until pop()
+
+    bool has_staged() const { return count != handed; }
+    void hand_over() { handed = count; }
   };
 
   // All places are free, and all queues are empty.
   void start(Memory& memory);
 
-  // A new last entry of `queue`, to be filled in; null if no place is left.
-  [[nodiscard]] QueuedOrder* push(Queue& queue);
+  // A new last entry of `queue`, staged, to be filled in; null if no place is left.
+  [[nodiscard]] Command* push(Queue& queue);
   // Does a follow replace the last command of `queue`? That command is last().
-  bool renews(const Queue& queue) const {
-    return queue.count > (queue.begun ? 1 : 0) &&
-           nodes_[queue.last].command.order.action == vm::Action::follow;
+  static bool renews(const Queue& queue) {
+    return queue.count > (queue.begun ? 1 : 0) && last(queue).action() == vm::Action::follow;
   }
-  QueuedOrder& last(const Queue& queue) const { return nodes_[queue.last].command; }
+  static Command& last(const Queue& queue) { return queue.last->command; }
   // The first entry of `queue`, which must not be empty; valid until pop().
-  const QueuedOrder& front(const Queue& queue) const { return nodes_[queue.first].command; }
-  void pop(Queue& queue);
-  void clear(Queue& queue);
+  static const Command& front(const Queue& queue) { return queue.first->command; }
+  void pop(Queue& queue);           // the first one, which was handed over
+  void drop_handed(Queue& queue);   // all that were handed over
+  void drop_staged(Queue& queue);   // … that were not
   void drop_waiting(Queue& queue);  // all except one that has begun
-  // Moves all of `from` to the end of `queue`; together they are at most vm::kMaxQueued.
-  void append(Queue& queue, Queue& from);
 
 private:
-  static constexpr std::uint8_t kNone = 0xFF;
-  struct Node {
-    QueuedOrder command;
-    std::uint8_t next = kNone;
-  };
+  void keep_first(Queue& queue, unsigned count);
 
-  std::span<Node> nodes_;
-  std::uint8_t free_ = kNone;
+  Node* free_ = nullptr;
 };
 
 }  // namespace robosync::layers

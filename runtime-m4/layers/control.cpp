@@ -76,7 +76,7 @@ void ControlLayer::release_all() {
     Unit& unit = units_[a];
     const vm::Actuator& old = wiring(unit);
     if (!is_halted(unit)) release(unit, old.on_release);
-    if (unit.busy || unit.queue.count > 0) trace_.emit(EventKind::cancel, trace_.now(), a);
+    if (unit.busy || unit.queue.handed > 0) trace_.emit(EventKind::cancel, trace_.now(), a);
   }
   program_ = nullptr;
 }
@@ -87,50 +87,48 @@ void ControlLayer::switch_off() {
 
 // --- staging, cancelling, committing: called from the step thread ---
 
-[[gnu::noinline]] void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
+void ControlLayer::stage(const Command& command, ActuatorMask actuators) {
+  if (command.action() == vm::Action::stop) return stage_stop(command, actuators);
+  const vm::Actuator* const wiring = program_->image.actuators.data();
+  Unit* const units = units_.data();
   const std::uint32_t verb = std::uint32_t{1} << command.verb();
-  const bool stops = command.action() == vm::Action::stop;
-  ActuatorMask dropped = 0;
-  ActuatorMask others = 0;
+  const bool is_limited = command.action() != vm::Action::perform && has_limits(command.order());
+  const bool follows = command.action() == vm::Action::follow;
+  ActuatorMask staged = actuators;
   each_bit(actuators, [&](unsigned a) {
-    const vm::Actuator& actuator = program_->image.actuators[a];
-    if ((actuator.verbs & verb) == 0) {
-      others |= bit<ActuatorMask>(a);
-    } else if (stops) {
-      stage_stop(units_[a], command.verb());
-    } else if (!stage_one(units_[a], actuator, command)) {
-      dropped |= bit<ActuatorMask>(a);
+    if ((wiring[a].verbs & verb) == 0) {
+      staged &= ~bit<ActuatorMask>(a);
+      return;
     }
+    const auto lock = kernel_.lock();
+    Command* const place = place_of(units[a].queue, follows);
+    if (place == nullptr) {
+      staged &= ~bit<ActuatorMask>(a);
+      dropped_ |= bit<ActuatorMask>(a);
+      return;
+    }
+    *place = command;
+    if (is_limited) limit(wiring[a], place->order_);
   });
-  dropped_ |= dropped;
-  staged_ |= actuators & ~(dropped | others);
-  to_commit_ |= staged_;
-}
-
-void ControlLayer::stage_stop(Unit& unit, std::uint8_t verb) {
-  const auto lock = kernel_.lock();
-  pool_.clear(unit.staged);
-  pool_.drop_waiting(unit.queue);
-  unit.staged_stop = verb;
-}
-
-[[gnu::always_inline]] inline bool ControlLayer::stage_one(Unit& unit, const vm::Actuator& actuator,
-                                                           const Command& command) {
-  const auto lock = kernel_.lock();
-  QueuedOrder* const place = place_of(unit, command.action());
-  if (place != nullptr) resolve(actuator, command, *place);
-  return place != nullptr;
+  note_staged(staged);
 }
 
 // A follow behind a waiting follow gives that one a new target, and takes no place.
-QueuedOrder* ControlLayer::place_of(Unit& unit, vm::Action action) {
-  if (action == vm::Action::follow) {
-    const bool first = unit.staged.count == 0 && unit.staged_stop == kNoVerb;
-    const CommandPool::Queue& behind = first ? unit.queue : unit.staged;
-    if (pool_.renews(behind)) return &pool_.last(behind);
-  }
-  if (unit.queue.count + unit.staged.count >= vm::kMaxQueued) return nullptr;
-  return pool_.push(unit.staged);
+[[gnu::always_inline]] inline Command* ControlLayer::place_of(CommandPool::Queue& queue,
+                                                              bool follows) {
+  return follows && CommandPool::renews(queue) ? &CommandPool::last(queue) : pool_.push(queue);
+}
+
+[[gnu::noinline]] void ControlLayer::stage_stop(const Command& command, ActuatorMask actuators) {
+  ActuatorMask staged = 0;
+  each_bit(actuators, [&](unsigned a) {
+    if (!has(program_->image.actuators[a].verbs, command.verb())) return;
+    const auto lock = kernel_.lock();
+    pool_.drop_waiting(units_[a].queue);
+    units_[a].staged_stop = command.verb();
+    staged |= bit<ActuatorMask>(a);
+  });
+  note_staged(staged);
 }
 
 ActuatorMask ControlLayer::take_staged() {
@@ -149,7 +147,7 @@ ActuatorMask ControlLayer::cancel_first(ActuatorMask actuators) {
   if (has(retired_, unit.actuator)) return mine;
   {
     const auto lock = kernel_.lock();
-    if (kernel_.state(*unit.thread) != kernel::Thread::State::blocked) {
+    if (kernel_.is_ready(*unit.thread)) {
       cancelling_ = mine;
       kernel_.signal(*unit.thread, kCancel);
       return mine;
@@ -171,37 +169,41 @@ ControlLayer::Unit& ControlLayer::first_in_rank(ActuatorMask actuators) const {
 
 void ControlLayer::commit_staged() {
   const auto lock = kernel_.lock();
-  ActuatorMask all = std::exchange(to_commit_, 0);
+  const ActuatorMask all = std::exchange(to_commit_, 0);
   if ((all & retired_) != 0) [[unlikely]]
     drop_staged(all & retired_);
+  const Stamp stamp = trace_.step();
+  ActuatorMask handed = 0;
   each_bit(all, [&](unsigned a) {
     Unit& unit = units_[a];
-    if (hand_over(unit)) kernel_.signal(*unit.thread, kCommit);
+    if (!hand_over(unit)) return;
+    unit.committed = stamp;
+    handed |= bit<ActuatorMask>(a);
+    kernel_.signal(*unit.thread, kCommit);
   });
+  idle_ &= ~handed;
 }
 
 // For actuators whose threads were stopped.
 [[gnu::cold]] void ControlLayer::drop_staged(ActuatorMask actuators) {
   each_bit(actuators, [&](unsigned a) {
     Unit& unit = units_[a];
-    pool_.clear(unit.staged);
+    pool_.drop_staged(unit.queue);
     unit.staged_stop = kNoVerb;
   });
   idle_ |= actuators;
   kernel_.signal(step_thread_, events_.idle);
 }
 
-// Appends to what the same response sent in an earlier step; a new owner gets an actuator with an
-// empty queue. The actuator is no longer idle. False: only a waiting follow has a new target.
+// Behind what the same response sent in an earlier step; a new owner gets an actuator with an empty queue.
+// False: only a waiting follow has a new target.
 inline bool ControlLayer::hand_over(Unit& unit) {
-  if (unit.staged_stop != kNoVerb) {
+  if (unit.staged_stop != kNoVerb) [[unlikely]] {
     unit.stopping = std::exchange(unit.staged_stop, kNoVerb);
-  } else if (unit.staged.count == 0) {
+  } else if (!unit.queue.has_staged()) {
     return false;
   }
-  pool_.append(unit.queue, unit.staged);
-  unit.committed = trace_.step();
-  idle_ &= ~bit<ActuatorMask>(unit.actuator);
+  unit.queue.hand_over();
   return true;
 }
 
@@ -220,7 +222,7 @@ void ControlLayer::retire(unsigned actuator) {
   outputs_.halt(bit<ActuatorMask>(actuator));
   release(unit, wiring(unit).safe);
   const auto lock = kernel_.lock();
-  pool_.clear(unit.queue);
+  pool_.drop_handed(unit.queue);
   unit.busy = false;
   retired_ |= bit<ActuatorMask>(actuator);
   idle_ |= bit<ActuatorMask>(actuator);
@@ -313,35 +315,45 @@ void ControlLayer::halt_for_good() {
 
 // --- the actuator's thread ---
 
+// Sees to what is under way. Returns whether the next command may begin; otherwise `wake` says when to look again. Inline, since
+// the stacks are small.
+[[gnu::always_inline]] inline bool ControlLayer::attend(Unit& unit, kernel::Events events,
+                                                        kernel::Time& wake) {
+  const bool was_halted = (events & kHalt) != 0;  // and may have been let go since
+  if ((events & kCancel) != 0) {
+    finish_cancel(unit);
+    wake = kernel::kForever;
+    return false;
+  }
+  if (events == 0 && !unit.busy) {  // cancel_first()
+    wake = kernel::kForever;
+    return false;
+  }
+  if (was_halted || is_halted(unit)) {
+    drop_all(unit);
+    if (was_halted) release(unit, wiring(unit).safe);
+    unit.busy = false;
+    wake = kernel::kForever;
+    return false;
+  }
+  if ((events & kCommit) != 0) {
+    if (unit.stopping != kNoVerb) wake = obey_stop(unit);
+    if (goes_elsewhere(unit)) unit.busy = false;
+  }
+  if (unit.busy && kernel_.now() >= wake) wake = go_on(unit);
+  return !unit.busy;
+}
+
 void ControlLayer::run(Unit& unit) {
   kernel::Time wake = kernel::kForever;
   while (true) {
     const kernel::Events events = kernel_.wait(kCommit | kCancel | kHalt, wake);
-    if ((events & kCancel) != 0) {
-      finish_cancel(unit);
-      wake = kernel::kForever;
-      continue;
-    }
-    if (events == 0 && !unit.busy) {  // cancel_first()
-      wake = kernel::kForever;
-      continue;
-    }
-    const bool was_halted = (events & kHalt) != 0;  // and may have been let go since
-    if (was_halted || is_halted(unit)) {
-      drop_all(unit);
-      if (was_halted) release(unit, wiring(unit).safe);
-      unit.busy = false;
-      wake = kernel::kForever;
-      continue;
-    }
-    if ((events & kCommit) != 0) {
-      if (unit.stopping != kNoVerb) wake = obey_stop(unit);
-      if (goes_elsewhere(unit)) unit.busy = false;
-    }
-    if (unit.busy && kernel_.now() >= wake) wake = go_on(unit);
+    // In the common case it rests, and gets commands.
+    const bool begins = events == kCommit && rests(unit);
+    if (!begins && !attend(unit, events, wake)) continue;
     // A command that finds its actuator free belongs to the step that sent it.
     const Stamp stamp = (events & kCommit) != 0 ? unit.committed : trace_.now();
-    if (!unit.busy) wake = work_off(unit, stamp);
+    wake = work_off(unit, stamp);
   }
 }
 
@@ -349,14 +361,13 @@ void ControlLayer::run(Unit& unit) {
 bool ControlLayer::goes_elsewhere(const Unit& unit) const {
   if (!unit.follows) return false;
   const auto lock = kernel_.lock();
-  return unit.queue.count > 0 && pool_.front(unit.queue).order.action == vm::Action::follow;
+  return unit.queue.handed > 0 && CommandPool::front(unit.queue).action() == vm::Action::follow;
 }
 
 // Begins commands until one needs time or none is left. Returns when to wake.
 kernel::Time ControlLayer::work_off(Unit& unit, const Stamp& stamp) {
   for (unsigned i = 0; i <= vm::kMaxQueued && claim_next(unit); ++i) {
-    kernel::Time wake = 0;
-    begin_next(unit, stamp, wake);
+    const kernel::Time wake = begin_next(unit, stamp);
     if (unit.busy) return wake;
   }
   return kernel::kForever;
@@ -366,28 +377,29 @@ kernel::Time ControlLayer::work_off(Unit& unit, const Stamp& stamp) {
 bool ControlLayer::claim_next(Unit& unit) {
   const auto lock = kernel_.lock();
   if (is_held(unit)) return false;
-  if (unit.queue.count > 0) return unit.queue.begun = true;
+  if (unit.queue.handed > 0) return unit.queue.begun = true;
   idle_ |= bit<ActuatorMask>(unit.actuator);
   kernel_.signal(step_thread_, events_.idle);
   return false;
 }
 
 // The trace is told before the driver starts, so that the two are not on the stack together.
-void ControlLayer::begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake) {
-  const QueuedOrder& command = pool_.front(unit.queue);
+kernel::Time ControlLayer::begin_next(Unit& unit, const Stamp& stamp) {
+  const Command& command = CommandPool::front(unit.queue);
   if (trace_.listening()) [[unlikely]]
     tell_command(unit, command, stamp);
-  unit.follows = command.order.action == vm::Action::follow;
-  wake = keep_at(unit, start_driver(unit, command), stamp);
+  unit.follows = command.action() == vm::Action::follow;
+  const kernel::Time wake = keep_at(unit, start_driver(unit, command), stamp);
   const auto lock = kernel_.lock();
   pool_.pop(unit.queue);
+  return wake;
 }
 
-[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const QueuedOrder& command) {
-  const drivers::Order& order = command.order;
+[[gnu::noinline]] kernel::Time ControlLayer::start_driver(Unit& unit, const Command& command) {
+  const drivers::Order& order = command.order();
   if (order.action == vm::Action::perform) return start_performance(unit, order);
   unit.performance.end();
-  if (!command.complete || is_halted(unit)) return drivers::kDone;
+  if (!command.complete() || is_halted(unit)) return drivers::kDone;
   return drivers::driver(wiring(unit).driver).start(device(unit), order, kernel_.now());
 }
 
@@ -413,7 +425,7 @@ kernel::Time ControlLayer::go_on(Unit& unit) {
   trace_.emit(EventKind::blocked, trace_.now(), unit.actuator);
   trace_.emit(EventKind::cancel, trace_.now(), unit.actuator);
   const auto lock = kernel_.lock();
-  pool_.clear(unit.queue);
+  pool_.drop_handed(unit.queue);
   return kernel::kForever;
 }
 
@@ -455,7 +467,7 @@ void ControlLayer::put_at_rest(Unit& unit) {
 void ControlLayer::note_cancelled(Unit& unit) {
   trace_.emit(EventKind::cancel, trace_.step(), unit.actuator);
   const auto lock = kernel_.lock();
-  pool_.clear(unit.queue);
+  pool_.drop_handed(unit.queue);
   unit.stopping = kNoVerb;
   idle_ &= ~bit<ActuatorMask>(unit.actuator);
 }
@@ -493,7 +505,7 @@ kernel::Time ControlLayer::obey_stop(Unit& unit) {
 
 void ControlLayer::drop_all(Unit& unit) {
   const auto lock = kernel_.lock();
-  pool_.clear(unit.queue);
+  pool_.drop_handed(unit.queue);
   unit.stopping = kNoVerb;
 }
 
@@ -508,14 +520,14 @@ void ControlLayer::tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp
 }
 
 // values: the word or -1, the mask of parameters that the program gave, and these parameters, with limits applied.
-void ControlLayer::tell_command(const Unit& unit, const QueuedOrder& command, const Stamp& stamp) {
+void ControlLayer::tell_command(const Unit& unit, const Command& command, const Stamp& stamp) {
   link::Event event;
-  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb);
-  event.values[0] = command.word == vm::kNoWord ? -1 : command.word;
-  event.values[1] = command.given;
+  Trace::begin(event, EventKind::command, stamp, unit.actuator, command.verb());
+  event.values[0] = command.word() == vm::kNoWord ? -1 : command.word();
+  event.values[1] = command.given();
   event.value_count = 2;
-  each_bit(command.given,
-           [&](unsigned p) { event.values[event.value_count++] = command.order.params[p]; });
+  each_bit(command.given(),
+           [&](unsigned p) { event.values[event.value_count++] = command.order().params[p]; });
   trace_.emit(event);
 }
 

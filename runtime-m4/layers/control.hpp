@@ -99,29 +99,32 @@ private:
     kernel::Thread* thread = nullptr;
     drivers::ActuatorState drive;
     Performance performance;
-    CommandPool::Queue queue;   // handed over
-    CommandPool::Queue staged;  // to be handed over by commit()
-    Stamp committed;            // the step that `queue` comes from
+    CommandPool::Queue queue;
+    Stamp committed;  // the step that it was handed over in
     std::uint8_t actuator = 0;
     bool busy = false;
     bool follows = false;                // the order under way is a follow
-    std::uint8_t staged_stop = kNoVerb;  // the STOP that precedes `staged`
-    std::uint8_t stopping = kNoVerb;     // … and the one that precedes `queue`, handed over
+    std::uint8_t staged_stop = kNoVerb;  // the STOP that precedes what is staged
+    std::uint8_t stopping = kNoVerb;     // … and the one that precedes what was handed over
   };
 
   void commit_staged();
   ActuatorMask take_all_idle();
   ActuatorMask take_newly_halted();
-  void stage_stop(Unit& unit, std::uint8_t verb);
-  [[nodiscard]] bool stage_one(Unit& unit, const vm::Actuator& actuator, const Command& command);
-  QueuedOrder* place_of(Unit& unit, vm::Action action);
+  Command* place_of(CommandPool::Queue& queue, bool follows);
+  void stage_stop(const Command& command, ActuatorMask actuators);
+  void note_staged(ActuatorMask actuators) {
+    staged_ |= actuators;
+    to_commit_ |= actuators;
+  }
   [[nodiscard]] bool start_unit(const vm::Image& image, unsigned actuator, ProgramThreads& threads);
   void take_over(const LoadedProgram& program);
   void run(Unit& unit);
+  bool attend(Unit& unit, kernel::Events events, kernel::Time& wake);
   bool goes_elsewhere(const Unit& unit) const;
   kernel::Time work_off(Unit& unit, const Stamp& stamp);
-  void begin_next(Unit& unit, const Stamp& stamp, kernel::Time& wake);
-  kernel::Time start_driver(Unit& unit, const QueuedOrder& command);
+  kernel::Time begin_next(Unit& unit, const Stamp& stamp);
+  kernel::Time start_driver(Unit& unit, const Command& command);
   kernel::Time start_performance(Unit& unit, const drivers::Order& order);
   kernel::Time go_on(Unit& unit);
   [[gnu::cold]] kernel::Time give_up(Unit& unit);
@@ -138,8 +141,7 @@ private:
   [[gnu::noinline]] kernel::Time stop_driver(Unit& unit);
   void drop_all(Unit& unit);
   [[gnu::noinline]] void tell_stop(const Unit& unit, unsigned verb, const Stamp& stamp);
-  [[gnu::noinline]] void tell_command(const Unit& unit, const QueuedOrder& command,
-                                      const Stamp& stamp);
+  [[gnu::noinline]] void tell_command(const Unit& unit, const Command& command, const Stamp& stamp);
 
   drivers::Device device(Unit& unit);
   const vm::Actuator& wiring(const Unit& unit) const {
@@ -147,6 +149,9 @@ private:
   }
   [[gnu::always_inline]] bool is_halted(const Unit& unit) const {
     return has(halted(), unit.actuator);
+  }
+  bool rests(const Unit& unit) const {
+    return !unit.busy && unit.stopping == kNoVerb && !is_halted(unit);
   }
   // Its queue must wait.
   bool is_held(const Unit& unit) const { return is_halted(unit) || unit.stopping != kNoVerb; }

@@ -32,19 +32,30 @@ ChannelMask Mailboxes::post(const Reading& reading, const vm::Channel& channel) 
   const bool was_known = box.is_known();
   if (was_known && !differs(reading.value(), box.value, channel.change)) return 0;
   box.value = reading.value();
-  if (!was_known) expires_by(expires_at(number, channel));
+  if (!was_known) note_known(number, channel);
   return bit<ChannelMask>(number);
+}
+
+[[gnu::always_inline]] inline void Mailboxes::note_known(unsigned channel,
+                                                         const vm::Channel& wiring) {
+  const kernel::Time time = expiry_of(channel, wiring);
+  if (time < next_expiry_) {
+    const bool is_new = boxes_[channel].sampled_at() == kernel_.time();
+    if (is_new && time != 0) [[likely]] {  // without a division
+      next_expiry_ = time;
+      expiry_tick_ = kernel_.tick() + wiring.stale_ms + 1;
+    } else {
+      set_next_expiry(time);
+    }
+  }
+  expiry_of_news_ = std::min(expiry_of_news_, time);
 }
 
 void Mailboxes::forget(unsigned channel) {
   const auto lock = kernel_.lock();
   forgotten_ |= bit<ChannelMask>(channel);
-  expires_by(0);
-}
-
-void Mailboxes::expires_by(kernel::Time time) {
-  if (time < next_expiry_) set_next_expiry(time);
-  expiry_of_news_ = std::min(expiry_of_news_, time);
+  set_next_expiry(0);
+  expiry_of_news_ = 0;
 }
 
 // Ticks wrap, so kForever is taken as half of their range from now: after that nothing is certain to be fresh.
@@ -89,11 +100,7 @@ bool Mailboxes::expire(unsigned channel, const vm::Channel& wiring, kernel::Time
 
 kernel::Time Mailboxes::expires_at(unsigned channel, const vm::Channel& wiring) const {
   const auto lock = kernel_.lock();
-  const Mailbox& box = boxes_[channel];
-  if (!box.is_known()) return kernel::kForever;
-  if (has(forgotten_, channel)) return 0;
-  if (wiring.stale_ms == 0) return kernel::kForever;
-  return box.sampled_at() + life_of(wiring);
+  return boxes_[channel].is_known() ? expiry_of(channel, wiring) : kernel::kForever;
 }
 
 }  // namespace robosync::layers

@@ -92,9 +92,16 @@ private:
   // When expire() may first be true; kForever for never.
   kernel::Time expires_at(unsigned channel, const vm::Channel& wiring) const;
 
-  kernel::Kernel& kernel_;
-  void expires_by(kernel::Time time);
+  // … of one that is known.
+  [[gnu::always_inline]] kernel::Time expiry_of(unsigned channel, const vm::Channel& wiring) const {
+    if (has(forgotten_, channel)) return 0;
+    if (wiring.stale_ms == 0) return kernel::kForever;
+    return boxes_[channel].sampled_at() + life_of(wiring);
+  }
+  void note_known(unsigned channel, const vm::Channel& wiring);
   void set_next_expiry(kernel::Time time);
+
+  kernel::Kernel& kernel_;
 
   kernel::Time next_expiry_ = kernel::kForever;
   std::uint32_t expiry_tick_ = 0;  // the tick of next_expiry_, or an earlier one

@@ -13,9 +13,9 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime-m4/drivers/order.hpp"
 #include "runtime-m4/kernel/time.hpp"
 #include "vm/image.hpp"
-#include "vm/output.hpp"
 
 namespace robosync::layers {
 
@@ -103,24 +103,31 @@ private:
   std::span<vm::Value> values_;
 };
 
-// What a response wants of actuators, as it has put it out. Words are already resolved; the actuator's limits are applied
-// later.
+// What a response wants of actuators. Words are already resolved; each actuator's limits are applied to its own copy.
 class Command {
 public:
-  vm::Action action() const { return action_; }
-  std::uint8_t verb() const { return said_.verb; }    // index in the verb table
-  std::uint8_t word() const { return said_.word; }    // index in the word table, or kNoWord
-  std::uint8_t given() const { return said_.given; }  // bit p: the program gave param(p) itself
-  std::uint8_t known() const { return known_; }  // … or its word did; the others are undefined
-  vm::Value param(unsigned index) const { return said_.params[index]; }
+  const drivers::Order& order() const { return order_; }
+  vm::Action action() const { return order_.action; }
+  std::uint8_t verb() const { return verb_; }  // index in the verb table
+  std::uint8_t word() const { return word_; }  // index in the word table, or kNoWord
+  std::uint8_t given() const {
+    return given_;
+  }  // bit p: the program gave parameter p itself, not its word
+  bool complete() const {
+    return complete_;
+  }  // no parameter is kUnknown; otherwise it is not carried out
 
 private:
-  friend class BehaviorLayer;
+  friend class BehaviorLayer;  // makes them
+  friend class ControlLayer;   // limits its copies
+  friend class CommandPool;
   Command() = default;
 
-  vm::Output said_;
-  vm::Action action_;
-  std::uint8_t known_;
+  drivers::Order order_;
+  std::uint8_t verb_ = 0;
+  std::uint8_t word_ = vm::kNoWord;
+  std::uint8_t given_ = 0;
+  bool complete_ = false;
 };
 
 }  // namespace robosync::layers

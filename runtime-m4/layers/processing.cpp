@@ -56,6 +56,7 @@ bool ProcessingLayer::start(const LoadedProgram& program, const Beginnings& begi
     untouched_inputs_ |= program.inputs[b];
     if (starts_at_once(program, program.image.behaviors[b])) unstarted_ |= bit<BehaviorMask>(b);
   }
+  is_lost_or_first_ = unstarted_ != 0;
   kernel::ThreadSpec spec;
   spec.name = "step";
   spec.category = kernel::Category::processing;
@@ -84,7 +85,7 @@ void ProcessingLayer::run() {
     pass();
     passes_.store(passes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     in_pass_.store(false, std::memory_order_relaxed);
-    next = lost_behaviors_ != 0 ? 0 : next_time();
+    next = is_lost_or_first_ ? 0 : next_time();
   }
 }
 
@@ -98,7 +99,7 @@ void ProcessingLayer::pass() {
   layers_.arbiter.note_halted(layers_.control.halted());
   const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
   layers_.triggers.settle(now);
-  const bool lost_or_first = (lost_behaviors_ | unstarted_) != 0;
+  const bool lost_or_first = is_lost_or_first_;
   const bool anyway = lost_or_first || halted != 0 || is_due(now);
   if (!latch(time, now, anyway)) return;
   set_due_ = now + 1;
@@ -109,6 +110,7 @@ void ProcessingLayer::pass() {
   if (lost_or_first) [[unlikely]] {
     interrupt_lost(std::exchange(lost_behaviors_, 0));
     woken_ = std::exchange(unstarted_, 0);
+    is_lost_or_first_ = false;
   }
   if (halted != 0) interrupt_halted(halted);
   find_concerned();
@@ -163,8 +165,8 @@ bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway) {
   const ChannelMask expired =
       layers_.mailboxes.take_expired(program_->image, announced, time + trace_.activated_at());
   if (!anyway && (announced | expired) == 0) return false;
-  const Stamp stamp{.time = time, .step = trace_.step().step + 1};
-  trace_.begin_step(stamp);
+  trace_.begin_step(time);
+  const Stamp& stamp = trace_.step();
   snapshot_.milliseconds_ = now;
   const ChannelMask news = latch_channels(announced, expired, stamp);
   changed_ = inputs(news, latch_variables(stamp));
@@ -175,6 +177,7 @@ bool ProcessingLayer::latch(kernel::Time time, std::uint32_t now, bool anyway) {
 ChannelMask ProcessingLayer::latch_channels(ChannelMask announced, ChannelMask expired,
                                             const Stamp& stamp) {
   ChannelMask news = 0;
+  const bool listening = trace_.listening();
   each_bit(announced | expired, [&](unsigned c) {
     const vm::Value before = snapshot_.values_[c];
     vm::Value value = layers_.mailboxes.value(c);
@@ -182,7 +185,7 @@ ChannelMask ProcessingLayer::latch_channels(ChannelMask announced, ChannelMask e
       value = vm::kUnknown;
     snapshot_.values_[c] = value;
     if (is_news(c, before, value)) news |= bit<ChannelMask>(c);
-    if (trace_.listening()) [[unlikely]]
+    if (listening) [[unlikely]]
       report_input(c, has(expired, c), stamp);
   });
   return news;
@@ -309,6 +312,7 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
     case kernel::Category::behavior:
       layers_.behaviors.retire(member.index);
       lost_behaviors_ |= bit<BehaviorMask>(member.index);
+      is_lost_or_first_ = true;
       break;
     case kernel::Category::control:
       layers_.control.retire(member.index);
@@ -350,28 +354,24 @@ void ProcessingLayer::find_concerned() {
 }
 
 void ProcessingLayer::touch() {
-  untouched_inputs_ = 0;
+  BehaviorMask still = 0;
+  InputMask inputs = 0;
   for (BehaviorMask left = untouched_; left != 0; left &= left - 1) {
     const unsigned behavior = lowest_bit(left);
-    if (behavior >= program_->image.behaviors.size()) break;
     if (stirred(behavior)) {
-      concern_all(behavior);
+      concerned_.insert_all(program_->rules_of(behavior));
     } else {
-      untouched_inputs_ |= program_->inputs[behavior];
+      still |= bit<BehaviorMask>(behavior);
+      inputs |= program_->inputs[behavior];
     }
   }
-}
-
-void ProcessingLayer::concern_all(unsigned behavior) {
-  untouched_ &= ~bit<BehaviorMask>(behavior);
-  const vm::Behavior& wiring = program_->image.behaviors[behavior];
-  for (unsigned r = 0; r < wiring.rule_count; ++r)
-    concerned_.insert(wiring.first_rule + r);
+  untouched_ = still;
+  untouched_inputs_ = inputs;
 }
 
 // An input of the behaviour has changed, or one of its rules is due.
 bool ProcessingLayer::stirred(unsigned behavior) const {
-  return has(woken_, behavior) || (program_->inputs[behavior] & changed_) != 0;
+  return (program_->inputs[behavior] & changed_) != 0 || has(woken_, behavior);
 }
 
 // --- a step, from the changed inputs to the commands ---
@@ -379,16 +379,17 @@ bool ProcessingLayer::stirred(unsigned behavior) const {
 void ProcessingLayer::step() {
   layers_.behaviors.begin_step(snapshot_);
   cancel_interrupted();
-  for (unsigned rule = next_at_work(0); rule < RuleSet::kEnd;) {
+  for (unsigned from = 0; from != RuleSet::kEnd;) {
+    const auto [rule, next] = next_at_work(from);
+    if (rule == RuleSet::kEnd) break;
     const unsigned behavior = program_->behavior_of[rule];
     const RuleRange rules = program_->rules_of(behavior);
-    const unsigned next = next_at_work(rule + 1);
     if (has_sole_turn(rule, next, rules)) {
-      take_sole_turn(behavior, rule);
-      rule = next;
+      take_sole_turn(rule, next == RuleSet::kEnd);
+      from = next;
     } else {
       take_turn(behavior, rules);
-      rule = next_at_work(rules.end);
+      from = rules.end;
     }
   }
   layers_.control.commit();
@@ -397,9 +398,10 @@ void ProcessingLayer::step() {
   concerned_.clear();  // here, where it delays no command
 }
 
-// The first rule, from `rule` on, that is concerned, wants to run, or runs.
-unsigned ProcessingLayer::next_at_work(unsigned rule) const {
-  return RuleSet::first_of(rule, concerned_, layers_.triggers.active(), layers_.arbiter.running());
+// The first two rules, from `rule` on, that are concerned, want to run, or run.
+RuleSet::Two ProcessingLayer::next_at_work(unsigned rule) const {
+  return RuleSet::first_two_of(rule, concerned_, layers_.triggers.active(),
+                               layers_.arbiter.running());
 }
 
 // True if `rule` is evaluated and no other rule of the behaviour is evaluated, wants to run, or runs; `next` is the first
@@ -418,17 +420,22 @@ inline void ProcessingLayer::await_behavior() {
 // A turn that does for this one rule all that take_turn() does for each, without looking for others. It does one
 // thing sooner: a response that may go on runs in the same activation, like one that begins, unless
 // something that the rule has found out ends it.
-void ProcessingLayer::take_sole_turn(unsigned behavior, unsigned rule) {
+void ProcessingLayer::take_sole_turn(unsigned rule, bool is_last) {
   const bool may_go_on = layers_.arbiter.runs(rule) && goes_on(rule);
   layers_.behaviors.take_sole_turn(rule, may_go_on);
   await_behavior();
+  if (is_last) send_if_undisputed(rule, may_go_on);
   const bool follows = layers_.triggers.follows(rule);
   if (follows) collect(rule);
-  if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
-    const bool wins = serve(claim, false);
-    layers_.triggers.forget(rule);
+  if (Claim claim; layers_.behaviors.sole_claim_of({rule, rule + 1}, claim)) {
+    const bool wins = decide(claim, false);
     cancel_interrupted();
-    if (wins) conclude(claim.rule);
+    if (wins) {
+      if (is_last) send_at_once(rule, claim.actuators);
+      give(claim);
+    }
+    layers_.triggers.forget(rule);
+    if (wins) conclude(rule);
     return;
   }
   if (follows) arbitrate(rule);
@@ -439,13 +446,33 @@ void ProcessingLayer::take_sole_turn(unsigned behavior, unsigned rule) {
   run_response(rule);
 }
 
+// The commands of the step's last response need not wait for what else follows from it, except for the end of those from
+// which it takes actuators. A listener is told of all that first.
+[[gnu::always_inline]] inline void ProcessingLayer::send_at_once(unsigned rule,
+                                                                 ActuatorMask actuators) {
+  if (trace_.listening() || layers_.behaviors.is_retired(program_->behavior_of[rule])) return;
+  layers_.behaviors.put_out(actuators);
+  layers_.control.commit();
+}
+
+[[gnu::always_inline]] inline void ProcessingLayer::send_if_undisputed(unsigned rule,
+                                                                       bool may_go_on) {
+  const BehaviorLayer& behaviors = layers_.behaviors;
+  if (Side side{}; behaviors.has_begun(rule, side)) {
+    if (behaviors.begins_undisputed(rule, side))
+      send_at_once(rule, behaviors.actuators_of(rule, side));
+  } else if (may_go_on && behaviors.went_on(rule)) {
+    send_at_once(rule, layers_.arbiter.holding(rule).actuators);
+  }
+}
+
 void ProcessingLayer::take_turn(unsigned behavior, RuleRange rules) {
   if (concerned_.has_any(rules)) {
     layers_.behaviors.take_turn(behavior, concerned_);
     await_behavior();
     layers_.triggers.keep_concerned(concerned_, rules);
     concerned_.each_in(rules, [this](unsigned rule) { collect(rule); });
-    if (Claim claim; layers_.behaviors.sole_claim_of(behavior, claim)) {
+    if (Claim claim; layers_.behaviors.sole_claim_of(rules, claim)) {
       const bool wins = serve(claim, false);
       concerned_.each_in(rules, [this](unsigned rule) { layers_.triggers.forget(rule); });
       cancel_interrupted();
@@ -500,11 +527,21 @@ void ProcessingLayer::arbitrate(unsigned rule) {
 
 // Returns whether it won.
 bool ProcessingLayer::serve(const Claim& claim, bool silent) {
+  const bool wins = decide(claim, silent);
+  if (wins) give(claim);
+  return wins;
+}
+
+// Returns whether it wins; then its actuators are free.
+bool ProcessingLayer::decide(const Claim& claim, bool silent) {
   if (!layers_.arbiter.is_free(claim) && !prevails(claim, silent)) return false;
   report(claim, EventKind::win);
+  return true;
+}
+
+void ProcessingLayer::give(const Claim& claim) {
   layers_.triggers.won(claim.rule, claim.side, snapshot_.milliseconds());
   layers_.arbiter.give(claim);
-  return true;
 }
 
 // Decides the claim against the rules whose actuators it wants, and against its own rule.

@@ -154,20 +154,23 @@ private:
   // --- which rules a step concerns ---
   void find_concerned();
   [[gnu::noinline]] void touch();
-  [[gnu::cold]] void concern_all(unsigned behavior);
   bool stirred(unsigned behavior) const;
 
   // --- what happens in a step ---
   void step();
-  unsigned next_at_work(unsigned rule) const;
+  RuleSet::Two next_at_work(unsigned rule) const;
   bool has_sole_turn(unsigned rule, unsigned next, RuleRange rules) const;
-  void take_sole_turn(unsigned behavior, unsigned rule);
+  void take_sole_turn(unsigned rule, bool is_last);
+  void send_at_once(unsigned rule, ActuatorMask actuators);
+  void send_if_undisputed(unsigned rule, bool may_go_on);
   [[gnu::noinline]] void take_turn(unsigned behavior, RuleRange rules);
   [[gnu::cold]] void interrupt_lost(BehaviorMask lost);
   [[gnu::cold]] void interrupt_halted(ActuatorMask halted);
   void collect(unsigned rule);
   void arbitrate(unsigned rule);
   bool serve(const Claim& claim, bool silent);
+  bool decide(const Claim& claim, bool silent);
+  void give(const Claim& claim);
   [[gnu::noinline]] bool prevails(const Claim& claim, bool silent);
   [[gnu::cold]] unsigned in_the_way(const Claim& claim, const Decision& decision) const;
   [[gnu::noinline]] void interrupt_by(const Claim& claim, const Decision& decision);
@@ -211,6 +214,7 @@ private:
   BehaviorMask unstarted_ = 0;       // with something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
+  bool is_lost_or_first_ = false;  // there are lost or unstarted behaviours
   LinkShare link_share_;
   bool saves_no_work_ = false;  // in builds for tests: see is_news() and has_sole_turn()
 };

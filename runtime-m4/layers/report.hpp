@@ -6,7 +6,7 @@
 
 namespace robosync::layers {
 
-// `said` is a text.
-void report_text(Trace& trace, const vm::Output& said, Stamp stamp);
+// `said` is a text, and `params` are the values in it.
+void report_text(Trace& trace, vm::Output said, const vm::Params& params, Stamp stamp);
 
 }  // namespace robosync::layers

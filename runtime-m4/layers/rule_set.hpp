@@ -78,6 +78,10 @@ public:
     for (; summary_ != 0; summary_ &= summary_ - 1)
       words_[std::countr_zero(summary_)] = 0;
   }
+  void insert_all(RuleRange rules) {
+    for (unsigned rule = rules.first; rule < rules.end; ++rule)
+      insert(rule);
+  }
   // Both sets cover the same number of rules; bit w of `summary`: word w of the others is not 0.
   void insert_all(RuleBits others, Word summary) {
     summary_ |= summary;
@@ -127,19 +131,38 @@ public:
   // The first member, at or above `rule`, of any of the sets, which all cover the same number of rules; kEnd if none.
   template <class... Others>
   static unsigned first_of(unsigned rule, const RuleSet& set, const Others&... others) {
-    unsigned w = rule / kBits;
+    const unsigned w = rule / kBits;
     if (w >= set.count_) return kEnd;
     const Word rest = (set.words_[w] | ... | others.words_[w]) & ~Word{0} << rule % kBits;
-    if (rest != 0) return lowest(w, rest);
-    const Word later = (set.summary_ | ... | others.summary_) & ~Word{1} << w;
-    if (later == 0) return kEnd;
-    w = static_cast<unsigned>(std::countr_zero(later));
-    return lowest(w, (set.words_[w] | ... | others.words_[w]));
+    return rest != 0 ? lowest(w, rest) : first_after(w, set, others...);
+  }
+  // … and the one after it.
+  struct Two {
+    unsigned first;
+    unsigned second;
+  };
+  template <class... Others>
+  [[gnu::always_inline]] static Two first_two_of(unsigned rule, const RuleSet& set,
+                                                 const Others&... others) {
+    const unsigned first = first_of(rule, set, others...);
+    if (first == kEnd) return {kEnd, kEnd};
+    const unsigned w = first / kBits;
+    const Word rest = (set.words_[w] | ... | others.words_[w]) & ~Word{1} << first % kBits;
+    return {first, rest != 0 ? lowest(w, rest) : first_after(w, set, others...)};
   }
 
 private:
   static constexpr unsigned kBits = RuleBits::kBits;
   static constexpr Word bit(unsigned index) { return Word{1} << index % kBits; }
+  // … after those of word `w`.
+  template <class... Others>
+  static unsigned first_after(unsigned w, const RuleSet& set, const Others&... others) {
+    if (w + 1 >= set.count_) return kEnd;
+    const Word later = (set.summary_ | ... | others.summary_) & ~Word{1} << w;
+    if (later == 0) return kEnd;
+    w = static_cast<unsigned>(std::countr_zero(later));
+    return lowest(w, (set.words_[w] | ... | others.words_[w]));
+  }
   [[gnu::always_inline]] static unsigned lowest(unsigned w, Word word) {
     return w * kBits + static_cast<unsigned>(std::countr_zero(word));
   }

@@ -16,6 +16,7 @@ struct SafetyRegion {
   struct Work {
     vm::Machine machine;
     vm::Progress progress;
+    vm::Params params;  // of its output, while that is read
   };
 
   // Allocates it for a program, right behind the stacks of its threads, all of which are multiples of policy::kStackUnit.

@@ -24,7 +24,10 @@ public:
     activated_tick_ = static_cast<std::uint32_t>(activated_at / kernel::kTick);
     step_ = {};
   }
-  void begin_step(const Stamp& step) { step_ = step; }
+  void begin_step(kernel::Time time) {
+    step_.time = time;
+    ++step_.step;
+  }
 
   kernel::Time activated_at() const { return activated_at_; }
   // 0 until the program's first tick.

@@ -49,8 +49,16 @@ std::uint32_t& Triggers::until(unsigned rule, Side side) const {
 
 // --- what was evaluated ---
 
-void Triggers::judge(unsigned rule, vm::Value condition, bool event) {
-  Judgement& state = judgement(rule);
+[[gnu::always_inline]] inline void Triggers::note_past(unsigned rule, Judgement state,
+                                                       std::uint32_t wake, bool event) {
+  workspace_.due[rule] = wake;
+  state.event = event || state.zero_divide;
+  judgement(rule) = state;
+  if (state.event || state.trigger != Trigger::none || wake != kNever) note(rule);
+}
+
+[[gnu::always_inline]] inline void Triggers::find_truth(Judgement& state, unsigned rule,
+                                                        vm::Value condition, bool event) const {
   if (condition == vm::kUnknown) {
     if (is_while(rule)) state.truth = Truth::unknown;
     return;
@@ -62,6 +70,12 @@ void Triggers::judge(unsigned rule, vm::Value condition, bool event) {
   if (truth == Truth::no && before != Truth::no && chooses(rule))
     state.trigger = Trigger::otherwise;
   if (truth == Truth::no && is_while(rule)) state.trigger = Trigger::none;
+}
+
+void Triggers::judge(unsigned rule, vm::Value condition, std::uint32_t wake, bool event) {
+  Judgement state = judgement(rule);
+  find_truth(state, rule, condition, event);
+  note_past(rule, state, wake, event);
 }
 
 void Triggers::begin(unsigned rule) {
@@ -87,10 +101,7 @@ void Triggers::draw_period(unsigned rule, vm::Value thousandths, std::uint32_t n
 }
 
 void Triggers::note_past(unsigned rule, std::uint32_t wake, bool event) {
-  Judgement& state = judgement(rule);
-  workspace_.due[rule] = wake;
-  state.event = event || state.zero_divide;
-  if (state.event || state.trigger != Trigger::none || wake != kNever) note(rule);
+  note_past(rule, judgement(rule), wake, event);
 }
 
 // --- what follows from it ---

@@ -36,7 +36,11 @@ public:
   [[gnu::cold]] void start(const vm::Image& image, Memory& memory);
 
   // --- for the behaviour of the rule ---
-  void judge(unsigned rule, vm::Value condition, bool event);
+  // The rule's condition was evaluated. It may change at `wake` (kNever: not with time alone). `event`: it had an event, which
+  // is over at the next evaluation.
+  void judge(unsigned rule, vm::Value condition, std::uint32_t wake, bool event);
+  // … of a rule without a response.
+  void note_past(unsigned rule, std::uint32_t wake, bool event);
   // An AT START rule.
   void begin(unsigned rule);
   // An EVERY rule: triggers if its time has come. True if its next period must be drawn.
@@ -45,9 +49,6 @@ public:
   // A turn begins: nothing follows yet.
   void begin_turn(RuleRange rules) { noted().clear_around(rules); }
   void begin_sole_turn(unsigned rule) { noted().erase(rule); }
-  // The rule was evaluated. Its condition may change at `wake` (kNever: not with time alone). `event`: it had an event, which
-  // is over at the next evaluation.
-  void note_past(unsigned rule, std::uint32_t wake, bool event);
   // The rule's evaluation has consequences.
   [[gnu::always_inline]] void note(unsigned rule) { noted().insert(rule); }
   void note_zero_divide(unsigned rule) { judgement(rule).zero_divide = true; }
@@ -152,6 +153,8 @@ private:
   const vm::Modifiers& modifiers(unsigned rule) const;
   Judgement& judgement(unsigned rule) const { return workspace_.judgements[rule]; }
   std::uint32_t due(unsigned rule) const { return workspace_.due[rule]; }
+  void find_truth(Judgement& state, unsigned rule, vm::Value condition, bool event) const;
+  void note_past(unsigned rule, Judgement state, std::uint32_t wake, bool event);
   void note_active(unsigned rule);
   void start_phase(unsigned rule);
   void begin_cooldown(unsigned rule, Side side, std::uint32_t now);

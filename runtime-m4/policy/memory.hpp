@@ -50,7 +50,7 @@ inline constexpr std::uint32_t kModuleStack = 768;
 inline constexpr std::uint32_t kStackUnit = 64;  // of unprivileged stacks
 // For SAFETY's bytecode, and the machine that runs it.
 inline constexpr std::uint32_t kSafetyStack = 160;
-inline constexpr std::uint32_t kSafetyMachine = 64;
+inline constexpr std::uint32_t kSafetyMachine = 96;
 
 inline constexpr std::uint32_t kFeeds = 40;  // readings that wait for their time
 // Sets of rules that the triggers keep.

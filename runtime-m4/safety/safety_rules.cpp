@@ -124,7 +124,7 @@ void SafetyRules::trip(const vm::Rule& rule) {
   tripped_.insert(number);
   note_trip(number);
   layers_.trace.emit(EventKind::trip, layers_.trace.now(), number);
-  vm::OutputReader reader(run_body(rule));
+  vm::OutputReader reader(run_body(rule), work_->params);
   vm::Output said{};
   while (reader.next(said))
     act(said, halted_by(rule));
@@ -178,11 +178,11 @@ std::span<const vm::Word> SafetyRules::run_body(const vm::Rule& rule) {
   return layers::SafetyRegion::put_out(output_, machine.output);
 }
 
-void SafetyRules::act(const vm::Output& said, ActuatorMask halted) {
+void SafetyRules::act(vm::Output said, ActuatorMask halted) {
   if (said.kind == vm::OutputKind::halt) {
     layers_.control.halt(actuators_of(program_->image, said.target) & halted);
   } else if (said.kind != vm::OutputKind::command) {
-    layers::report_text(layers_.trace, said, layers_.trace.now());
+    layers::report_text(layers_.trace, said, work_->params, layers_.trace.now());
   }
 }
 

@@ -75,7 +75,7 @@ private:
   [[gnu::cold, gnu::noinline]] void trip(const vm::Rule& rule);
   [[gnu::cold, gnu::noinline]] void resume(const vm::Rule& rule);
   [[gnu::cold]] std::span<const vm::Word> run_body(const vm::Rule& rule);
-  [[gnu::cold]] void act(const vm::Output& said, layers::ActuatorMask halted);
+  [[gnu::cold]] void act(vm::Output said, layers::ActuatorMask halted);
   layers::ActuatorMask halted_by(const vm::Rule& rule) const;
   unsigned number_of(const vm::Rule& rule) const;
   void note_trip(unsigned number);

@@ -21,10 +21,10 @@ STORE = r"boards::(\w+::)?(Eeprom|Store|FlashStore<.*>|Flash)::"
 RUNTIME = r"Runtime::(began|halt|hold_to_budgets|look_at_rules|obey|progress|resting|running|tend_outputs)\("
 MODULE = r"^(state_bytes|robosync_no_scratch|cost|init|strength|\w+_process)\b"
 CALLED_BY_POINTER = (
-    (r"layers::Trace::", r"update::TraceRing::"),
+    (r"layers::(Trace::|report_text|ControlLayer::tell_)", r"update::TraceRing::"),
     (r"layers::ControlLayer::(start_driver|stop_driver|next_key)", r"drivers::\w+::start\("),
     (r"layers::ControlLayer::release", r"drivers::\w+::release\("),
-    (r"layers::ControlLayer::start_unit", r"drivers::\w+::(advance|release)\("),  # go_on(), put_at_rest()
+    (r"layers::ControlLayer::(start_unit|attend)", r"drivers::\w+::(advance|release)\("),  # go_on(), put_at_rest()
     (r"layers::SensorLayer::serve_chip", r"layers::DriverSampler::(serve|lose)_chip"),
     (r"layers::SensorLayer::sample$", r"layers::DriverSampler::sample\("),
     (r"layers::SensorLayer::retire|layers::ProcessingLayer::note_stops", r"layers::DriverSampler::lose_chip"),

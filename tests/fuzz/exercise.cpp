@@ -170,7 +170,8 @@ private:
 
   // Everything the output refers to exists, and lies inside what the response declared.
   void check_output(std::span<const Word> output, std::uint32_t declared) {
-    vm::OutputReader reader(output);
+    vm::Params params{};
+    vm::OutputReader reader(output, params);
     vm::Output said;
     std::size_t used = 0;
     while (reader.next(said)) {

@@ -15,7 +15,8 @@ struct RuntimePeer {
   // its first step, and save_no_work() holds. This must make no difference. SAFETY rules are
   // evaluated by the safety thread, never by a step.
   static void concern_all(Runtime& runtime) {
-    auto all = ~layers::BehaviorMask{0};
+    const std::size_t count = runtime.image().behaviors.size();
+    layers::BehaviorMask all = ~layers::BehaviorMask{0} >> (8 * sizeof all - count);
     if (runtime.image().has_safety()) all &= ~(layers::BehaviorMask{1} << vm::kSafetyBehavior);
     layers::ProcessingLayer& processing = runtime.shared_.processing;
     processing.untouched_ = all;

@@ -210,6 +210,8 @@ public:
 
   vm::Verdict activate(const std::vector<std::byte>& bytes);
   void run(std::uint64_t until_ms);
+  // Does anybody listen to the trace? At first, yes.
+  void listen(bool on) { set_listening(on); }
   // Now, in units of the channel.
   link::FeedError feed(std::uint8_t channel, int units, std::uint64_t at_ms = 0);
   link::FeedError feed_raw(std::uint8_t channel, vm::Value thousandths, std::uint64_t at_ms = 0);

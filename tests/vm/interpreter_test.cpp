@@ -256,7 +256,8 @@ TEST_CASE("the output reader gives each command its own parameters") {
   const Out output =
       respond_to({encode(Op::arg, to, kLeft), encode_wide(Op::arg_k, at, 299),
                   encode(Op::cmd, 1, 2, 3), encode(Op::cmd_end, kGroupBit, 4, kNoWord)});
-  OutputReader reader(std::span(output.words).first(output.length));
+  Params params{};
+  OutputReader reader(std::span(output.words).first(output.length), params);
   Output command;
   REQUIRE(reader.next(command));
   CHECK(command.kind == OutputKind::command);
@@ -264,8 +265,8 @@ TEST_CASE("the output reader gives each command its own parameters") {
   CHECK(command.verb == 2);
   CHECK(command.word == 3);
   CHECK(command.given == (1U << to | 1U << at));
-  CHECK(command.params[to] == -42);
-  CHECK(command.params[at] == 70 * kScale);
+  CHECK(params[to] == -42);
+  CHECK(params[at] == 70 * kScale);
   REQUIRE(reader.next(command));
   CHECK(command.target == kGroupBit);
   CHECK(command.word == kNoWord);
@@ -275,11 +276,12 @@ TEST_CASE("the output reader gives each command its own parameters") {
 
 TEST_CASE("the output reader stops at what no response puts out") {
   Output command;
+  Params params{};
   for (const std::vector<Word>& words : {std::vector<Word>{encode(Op::arg, 0, 0)},
                                          {encode(Op::arg, 8, 0), 1, encode(Op::cmd)},
                                          {encode(Op::add, 0, 0, 0), encode(Op::cmd)},
                                          {0xFFFFFFFF, encode(Op::cmd)}}) {
-    OutputReader reader(words);
+    OutputReader reader(words, params);
     CHECK_FALSE(reader.next(command));
     CHECK_FALSE(reader.next(command));
   }
@@ -289,13 +291,14 @@ TEST_CASE("the output reader gives texts and halts, each with what was given to 
   const Out output = respond_to({encode(Op::arg, 1, kLeft), encode_wide(Op::log, 0, 0x1234),
                                  encode_wide(Op::alert, 0, 0xFFFE), encode(Op::halt, kAllActuators),
                                  encode(Op::end)});
-  OutputReader reader(std::span(output.words).first(output.length));
+  Params params{};
+  OutputReader reader(std::span(output.words).first(output.length), params);
   Output said;
   REQUIRE(reader.next(said));
   CHECK(said.kind == OutputKind::log);
   CHECK(said.text == 0x1234);
   CHECK(said.given == 0b10);
-  CHECK(said.params[1] == -42);
+  CHECK(params[1] == -42);
   REQUIRE(reader.next(said));
   CHECK(said.kind == OutputKind::alert);
   CHECK(said.text == 0xFFFE);

@@ -50,7 +50,8 @@ private:
 
 // Everything the output refers to exists, and lies inside what the response declared.
 void check_output(const Image& image, std::span<const Word> output, std::uint32_t declared) {
-  OutputReader reader(output);
+  Params params{};
+  OutputReader reader(output, params);
   Output said;
   std::size_t used = 0;
   while (reader.next(said)) {

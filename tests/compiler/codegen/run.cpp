@@ -19,7 +19,7 @@ std::string target_name(const vm::Image& image, std::uint8_t target) {
   return std::string(image.string(image.actuators[target].name));
 }
 
-std::string describe(const vm::Image& image, const vm::Output& output) {
+std::string describe(const vm::Image& image, const vm::Output& output, const vm::Params& params) {
   std::string text;
   switch (output.kind) {
     case vm::OutputKind::command:
@@ -34,10 +34,12 @@ std::string describe(const vm::Image& image, const vm::Output& output) {
     case vm::OutputKind::halt:
       text = "halt " + target_name(image, output.target);
       break;
+    case vm::OutputKind::none:
+      break;
   }
-  for (std::size_t param = 0; param < output.params.size(); ++param)
+  for (std::size_t param = 0; param < params.size(); ++param)
     if ((output.given >> param & 1) != 0)
-      text += " " + std::to_string(param) + ":" + std::to_string(output.params[param]);
+      text += " " + std::to_string(param) + ":" + std::to_string(params[param]);
   return text;
 }
 
@@ -102,11 +104,12 @@ vm::Value Runner::condition(std::size_t rule, const World& world) {
 }
 
 void Runner::take_output(Effects& effects) {
+  vm::Params params{};
   vm::OutputReader reader(
-      {output_.data(), static_cast<std::size_t>(machine.output - output_.data())});
+      {output_.data(), static_cast<std::size_t>(machine.output - output_.data())}, params);
   vm::Output output;
   while (reader.next(output))
-    effects.push_back(describe(image_, output));
+    effects.push_back(describe(image_, output, params));
 }
 
 namespace {

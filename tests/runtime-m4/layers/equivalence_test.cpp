@@ -1,6 +1,6 @@
 // No program can tell whether a step evaluates all rules of the affected behaviours or only those
-// that it concerns, nor whether the turn of a behaviour with a single concerned rule takes the fast path:
-// random programs with random readings, run both ways.
+// that it concerns, nor whether the turn of a behaviour with a single concerned rule takes the fast path,
+// nor whether anybody listens to the trace: random programs with random readings, run each way.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -21,11 +21,16 @@ using test::Rig;
 
 namespace {
 
-// The trace, and the number of conditions that were evaluated.
+enum class Way : std::uint8_t { usual, evaluates_all, unheard };
+
+// The trace, what was done to the pins, and the number of conditions that were evaluated.
 struct Outcome {
   std::vector<std::string> lines;
+  std::vector<std::pair<std::uint16_t, std::uint32_t>> writes;
   std::uint32_t evaluations;
 };
+constexpr unsigned kFeeds = 60;
+constexpr unsigned kUnheard = 50;  // of these, when nobody listens
 
 // A reading of one of the image's channels: anywhere in its range, or at a rule's threshold.
 vm::Value reading(const vm::Image& image, std::size_t channel, Draw& draw) {
@@ -40,17 +45,19 @@ vm::Value reading(const vm::Image& image, std::size_t channel, Draw& draw) {
 }
 
 // Nothing if the image is larger than a robot may be.
-std::optional<Outcome> run(const std::vector<std::byte>& bytes, unsigned seed, bool all) {
+std::optional<Outcome> run(const std::vector<std::byte>& bytes, unsigned seed, Way way) {
   const auto rig = std::make_unique<Rig>();
   const std::uint32_t before = test::evaluations();
-  rig->concerns_all = all;
+  rig->concerns_all = way == Way::evaluates_all;
+  rig->listen(way != Way::unheard);
   if (!rig->activate(bytes).ok()) return std::nullopt;
   vm::Image image;
   REQUIRE(vm::view_image(bytes, image));
   Draw draw(seed);
   std::uint64_t now = draw.below(3);
-  for (unsigned i = 0; i < 60; ++i) {
+  for (unsigned i = 0; i < kFeeds; ++i) {
     rig->run(now);
+    if (i == kUnheard) rig->listen(true);
     const unsigned channel = draw.below(static_cast<unsigned>(image.channels.size()));
     const vm::Value value = reading(image, channel, draw);
     REQUIRE(rig->feed_raw(static_cast<std::uint8_t>(channel), value) == link::FeedError::none);
@@ -58,7 +65,7 @@ std::optional<Outcome> run(const std::vector<std::byte>& bytes, unsigned seed, b
     now += draw.one_in(20) ? 310 : draw.one_in(3) ? 0 : draw.one_in(3) ? 1 : draw.below(60);
   }
   rig->run(now + 500);
-  return Outcome{rig->lines, test::evaluations() - before};
+  return Outcome{rig->lines, rig->board.writes, test::evaluations() - before};
 }
 
 // Where the traces diverge, and the lines before that.
@@ -73,6 +80,19 @@ std::string parting(const Outcome& few, const Outcome& every) {
   return text + "all: " + (there == every.lines.end() ? "the end" : *there);
 }
 
+// The drawn robot with servos for arms, whose pins show what is done to them.
+std::string robot_with_servos() {
+  std::string robot = robosync::testing::drawn_robot();
+  const std::string virtual_arm = R"("type": "VIRTUAL", "device": "joint")";
+  for (const char* servo : {R"("type": "PWM", "device": "servo", "pin": "10")",
+                            R"("type": "PWM", "device": "servo", "pin": "11")"}) {
+    const std::size_t at = robot.find(virtual_arm);
+    REQUIRE(at != std::string::npos);
+    robot.replace(at, virtual_arm.size(), servo);
+  }
+  return robot;
+}
+
 }  // namespace
 
 TEST_CASE("no program can tell whether all rules are evaluated or only those concerned") {
@@ -85,8 +105,8 @@ TEST_CASE("no program can tell whether all rules are evaluated or only those con
   for (const std::string& rsl : robosync::testing::drawn_programs()) {
     const compiler::Result result = compiler::compile({"drawn.rsl", rsl}, {"robot.json", robot});
     if (result.image.empty()) continue;
-    const auto few = run(result.image, ++seed, false);
-    const auto every = run(result.image, seed, true);
+    const auto few = run(result.image, ++seed, Way::usual);
+    const auto every = run(result.image, seed, Way::evaluates_all);
     if (!few || !every) continue;
     if (few->lines != every->lines) {
       INFO("seed " << seed << "\n" << rsl << "\n" << parting(*few, *every));
@@ -103,4 +123,27 @@ TEST_CASE("no program can tell whether all rules are evaluated or only those con
   CHECK(tripped > 50);
   CHECK(concerned > 0);
   CHECK(concerned * 3 < all * 2);  // the index pays off
+}
+
+// Without a listener, commands are sent before other things are done that follow from a reading.
+TEST_CASE("no program can tell whether anybody listens to the trace") {
+  unsigned seed = 0;
+  unsigned moved = 0;
+  std::size_t heard = 0;
+  const std::string robot = robot_with_servos();
+  for (const std::string& rsl : robosync::testing::drawn_programs()) {
+    const compiler::Result result = compiler::compile({"drawn.rsl", rsl}, {"robot.json", robot});
+    if (result.image.empty()) continue;
+    const auto usual = run(result.image, ++seed, Way::usual);
+    const auto unheard = run(result.image, seed, Way::unheard);
+    if (!usual || !unheard) continue;
+    INFO("seed " << seed << "\n" << rsl);
+    REQUIRE(unheard->writes == usual->writes);
+    REQUIRE(unheard->lines.size() <= usual->lines.size());
+    REQUIRE(std::equal(unheard->lines.rbegin(), unheard->lines.rend(), usual->lines.rbegin()));
+    moved += usual->writes.empty() ? 0 : 1;
+    heard += unheard->lines.size();
+  }
+  CHECK(moved > 100);
+  CHECK(heard > 10'000);
 }
