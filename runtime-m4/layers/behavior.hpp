@@ -186,7 +186,7 @@ private:
   bool goes_on_ = false;  // for a sole turn
   std::uint16_t rule_ = 0;
   std::uint16_t code_ = 0;
-  Command command_;  // that is being put out; here, so that no parameters need to be cleared
+  Command command_{};  // that is being put out; here, so that no parameters need to be cleared
   std::span<Unit> units_;
   std::span<ResumePoint> resume_points_;
   std::span<std::uint32_t> polls_since_;  // by rule; empty if none polls

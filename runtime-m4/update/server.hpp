@@ -63,7 +63,7 @@ private:
   static constexpr kernel::Events kNews = 2;
   static constexpr std::size_t kKeptFaults = 2;
   // Verifying and loading programs needs the most, or verifying signatures, where the firmware does that.
-  static constexpr std::size_t kStack = kAuthentication ? 5696 : 1920;
+  static constexpr std::size_t kStack = kAuthentication ? 5696 : 1952;
 
   void run();
   bool work();  // does one thing that is due; false if there is none, or the line is full
