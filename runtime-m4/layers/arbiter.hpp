@@ -77,8 +77,8 @@ public:
   [[gnu::always_inline]] bool is_free(ActuatorMask actuators) const {
     return (actuators & (owned_ | halted_)) == 0;
   }
-  // Certainly wins a trigger of `rule` for this side: it needs nobody's actuators but those of its own other side.
-  [[gnu::always_inline]] bool is_plain(unsigned rule, Side side, ActuatorMask actuators) const {
+  // A trigger of `rule` for this side certainly wins: the actuators are free, or held by the rule's other side. False: decide().
+  [[gnu::always_inline]] bool surely_wins(unsigned rule, Side side, ActuatorMask actuators) const {
     if (!runs(rule)) return is_free(actuators);
     const bool again = works(rule) && this->side(rule) == side;
     const ActuatorMask others = owned_ & ~holdings_[rule].actuators;

@@ -300,7 +300,7 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
   layers_.triggers.begin_sole_turn(rule);
   judge_rule(rule, machine);
   if (Side side{}; layers_.triggers.fired(rule, side) && !layers_.triggers.is_while(rule) &&
-                   begins_plainly(rule, side))
+                   surely_begins(rule, side))
     return run_response(machine, rule, side, begin_of(rule, side));
   Claim claim;
   bool silent = false;
@@ -318,10 +318,10 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
 }
 
 // The common cases: its response takes actuators from nobody, or only from its own other side.
-[[gnu::always_inline]] inline bool BehaviorLayer::begins_plainly(unsigned rule, Side side) const {
+[[gnu::always_inline]] inline bool BehaviorLayer::surely_begins(unsigned rule, Side side) const {
   return response_of(rule, side) != vm::kNoIndex &&
          resume_points_[rule].pause == vm::Pause::ended &&
-         layers_.arbiter.is_plain(rule, side, actuators_of(rule, side));
+         layers_.arbiter.surely_wins(rule, side, actuators_of(rule, side));
 }
 
 void BehaviorLayer::latch(const Unit& unit, vm::Machine& machine) {

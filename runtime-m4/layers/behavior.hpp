@@ -158,7 +158,7 @@ private:
   vm::Value evaluate_rule(unsigned rule, vm::Machine& machine);
   void evaluate_period(unsigned rule, vm::Machine& machine);
   void run_sole_turn(unsigned rule, vm::Machine& machine);
-  bool begins_plainly(unsigned rule, Side side) const;
+  bool surely_begins(unsigned rule, Side side) const;
   bool sole_claim(RuleRange rules, Claim& claim) const;
   bool waits(RuleRange rules) const;
   void begin_response(vm::Machine& machine, const Claim& claim);

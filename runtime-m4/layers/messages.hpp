@@ -110,12 +110,10 @@ public:
   vm::Action action() const { return order_.action; }
   std::uint8_t verb() const { return verb_; }  // index in the verb table
   std::uint8_t word() const { return word_; }  // index in the word table, or kNoWord
-  std::uint8_t given() const {
-    return given_;
-  }  // bit p: the program gave parameter p itself, not its word
-  bool complete() const {
-    return complete_;
-  }  // no parameter is kUnknown; otherwise it is not carried out
+  // Bit p: the program gave parameter p itself, not its word.
+  std::uint8_t given() const { return given_; }
+  // No parameter is kUnknown; otherwise the meaning is unclear, and the command is not carried out.
+  bool complete() const { return complete_; }
 
 private:
   friend class BehaviorLayer;  // makes them

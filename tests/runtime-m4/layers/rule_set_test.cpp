@@ -1,4 +1,5 @@
 // Sets of rules compared with std::set, with as many rules as a program may have, and at word boundaries.
+#include <iterator>
 #include <set>
 #include <vector>
 
@@ -26,7 +27,12 @@ void check_same(const RuleSet& set, const std::set<unsigned>& model) {
   for (unsigned rule = 0; rule <= kRules; ++rule) {
     if (rule < kRules) RC_ASSERT(set.has(rule) == model.contains(rule));
     const auto next = model.lower_bound(rule);
-    RC_ASSERT(RuleSet::first_of(rule, set) == (next == model.end() ? RuleSet::kEnd : *next));
+    const unsigned first = next == model.end() ? RuleSet::kEnd : *next;
+    RC_ASSERT(RuleSet::first_of(rule, set) == first);
+    const auto after = next == model.end() ? next : std::next(next);
+    const RuleSet::Two two = RuleSet::first_two_of(rule, set);
+    RC_ASSERT(two.first == first);
+    RC_ASSERT(two.second == (after == model.end() ? RuleSet::kEnd : *after));
   }
 }
 
