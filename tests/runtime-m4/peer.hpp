@@ -32,6 +32,7 @@ struct RuntimePeer {
   static vm::Value value(const Runtime& runtime, std::uint8_t input) {
     return runtime.shared_.processing.snapshot().value(input);
   }
+  static const layers::Mailboxes& mailboxes(const Runtime& runtime) { return runtime.mailboxes_; }
   static unsigned activations(const Runtime& runtime) { return runtime.activations_; }
   static bool has_begun(const Runtime& runtime) { return runtime.begun_; }
   static layers::ActuatorMask halted(const Runtime& runtime) { return runtime.control_.halted(); }
