@@ -164,10 +164,12 @@ void SVC_Handler();
 // the thread's own stack. It ends in a jump, so lr and r4–r11 are the thread's when switch.S saves them.
 void PendSV_Unprivileged_Handler() {
   using namespace robosync::port;
-  std::uint32_t psp = 0;
-  asm volatile("mrs %0, psp" : "=r"(psp));
+  std::uint32_t exc_return = 0, psp = 0;
+  asm volatile("mov %0, lr\n\tmrs %1, psp" : "=&r"(exc_return), "=r"(psp));
+  const bool uses_fpu = (exc_return & 0x10) == 0;
+  const std::uint32_t saved = uses_fpu ? kSaved : kSavedWithoutFpu;
   const auto stack = robosync_kernel.current().stack();
-  if (psp - kSaved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
+  if (psp - saved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
   return robosync_save_unprivileged(psp);
 }
 

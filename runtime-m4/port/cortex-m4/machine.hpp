@@ -44,6 +44,7 @@ inline constexpr std::size_t kMaxUnprivilegedStack =
 // Room for alignment and guard, the core's frame with FPU registers, and what switch.S saves.
 inline constexpr std::size_t kFrame = 104;
 inline constexpr std::size_t kSaved = 100;
+inline constexpr std::size_t kSavedWithoutFpu = 36;
 inline constexpr std::size_t kMinStack = kGuard - 8 + kGuard + kFrame + kSaved;
 
 // switch.S relies on this layout.
