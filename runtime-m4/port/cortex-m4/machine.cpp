@@ -164,12 +164,13 @@ void SVC_Handler();
 // the thread's own stack. It ends in a jump, so lr and r4–r11 are the thread's when switch.S saves them.
 void PendSV_Unprivileged_Handler() {
   using namespace robosync::port;
-  std::uint32_t exc_return = 0, psp = 0;
-  asm volatile("mov %0, lr\n\tmrs %1, psp" : "=&r"(exc_return), "=r"(psp));
-  const bool uses_fpu = (exc_return & 0x10) == 0;
-  const std::uint32_t saved = uses_fpu ? kSaved : kSavedWithoutFpu;
+  // Bit 4 of EXC_RETURN: the thread does not use the FPU, so less is saved.
+  std::uint32_t no_fpu = 0, psp = 0;
+  asm volatile("and %0, lr, #0x10\n\tmrs %1, psp" : "=&r"(no_fpu), "=r"(psp));
+  static_assert(kSaved - kSavedWithoutFpu == 0x10 << 2);
   const auto stack = robosync_kernel.current().stack();
-  if (psp - saved - word_of(stack.data()) >= stack.size()) return robosync_no_room();
+  if (psp - word_of(stack.data()) + (no_fpu << 2) - kSaved >= stack.size())
+    return robosync_no_room();
   return robosync_save_unprivileged(psp);
 }
 
