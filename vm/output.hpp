@@ -9,16 +9,17 @@
 
 namespace robosync::vm {
 
-enum class OutputKind : std::uint8_t { command, log, alert, halt, none };
+enum class OutputKind : std::uint8_t { none, command, log, alert, halt };
 
 // Members that `kind` does not use are 0.
 struct Output {
-  OutputKind kind;
-  std::uint16_t text;   // log, alert: offset in the strings
-  std::uint8_t target;  // command, halt: actuator, or kGroupBit | group; halt also kAllActuators
-  std::uint8_t verb;    // index in the verb table
-  std::uint8_t word;    // index in the word table, or kNoWord
-  std::uint8_t given;   // bit p: the output has parameter p
+  OutputKind kind = OutputKind::none;
+  std::uint16_t text = 0;  // log, alert: offset in the strings
+  std::uint8_t target =
+      0;                   // command, halt: actuator, or kGroupBit | group; halt also kAllActuators
+  std::uint8_t verb = 0;   // index in the verb table
+  std::uint8_t word = 0;   // index in the word table, or kNoWord
+  std::uint8_t given = 0;  // bit p: the output has parameter p
 };
 
 class OutputReader {
@@ -50,12 +51,11 @@ public:
 private:
   static Output command(Word word) {
     return {.kind = OutputKind::command,
-            .text = 0,
             .target = operand_a(word),
             .verb = operand_b(word),
-            .word = operand_c(word),
-            .given = 0};
+            .word = operand_c(word)};
   }
+  // A text or a halt; `none` if the word is no output.
   static Output other(Word word, Effect effect);
   [[gnu::always_inline]] bool take_param(std::uint8_t param) {
     if (next_ == end_ || param >= params_.size()) return false;

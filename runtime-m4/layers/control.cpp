@@ -5,7 +5,7 @@
 #include <bit>
 #include <utility>
 
-#include "runtime-m4/layers/order.hpp"
+#include "runtime-m4/layers/limits.hpp"
 
 namespace robosync::layers {
 

@@ -39,15 +39,7 @@ ChannelMask Mailboxes::post(const Reading& reading, const vm::Channel& channel) 
 [[gnu::always_inline]] inline void Mailboxes::note_known(unsigned channel,
                                                          const vm::Channel& wiring) {
   const kernel::Time time = expiry_of(channel, wiring);
-  if (time < next_expiry_) {
-    const bool is_new = boxes_[channel].sampled_at() == kernel_.time();
-    if (is_new && time != 0) [[likely]] {  // without a division
-      next_expiry_ = time;
-      expiry_tick_ = kernel_.tick() + wiring.stale_ms + 1;
-    } else {
-      set_next_expiry(time);
-    }
-  }
+  if (time < next_expiry_) set_next_expiry(time);
   expiry_of_news_ = std::min(expiry_of_news_, time);
 }
 

@@ -118,7 +118,6 @@ public:
 private:
   friend class BehaviorLayer;  // makes them
   friend class ControlLayer;   // limits its copies
-  friend class CommandPool;
   Command() = default;
 
   drivers::Order order_;

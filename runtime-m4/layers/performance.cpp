@@ -60,8 +60,8 @@ bool Performance::next(const vm::Image& image, kernel::Time now, drivers::Order&
   order.action = vm::Action::move;
   order.given = bit<unsigned>(static_cast<unsigned>(Param::to)) |
                 bit<unsigned>(static_cast<unsigned>(Param::over));
-  order.params[static_cast<unsigned>(Param::to)] = key.to;
-  order.params[static_cast<unsigned>(Param::over)] =
+  order[Param::to] = key.to;
+  order[Param::over] =
       static_cast<vm::Value>(std::min<kernel::Duration>(left / 1000, vm::kValueMax));
   return true;
 }

@@ -56,7 +56,6 @@ bool ProcessingLayer::start(const LoadedProgram& program, const Beginnings& begi
     untouched_inputs_ |= program.inputs[b];
     if (starts_at_once(program, program.image.behaviors[b])) unstarted_ |= bit<BehaviorMask>(b);
   }
-  is_lost_or_first_ = unstarted_ != 0;
   kernel::ThreadSpec spec;
   spec.name = "step";
   spec.category = kernel::Category::processing;
@@ -85,7 +84,7 @@ void ProcessingLayer::run() {
     pass();
     passes_.store(passes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     in_pass_.store(false, std::memory_order_relaxed);
-    next = is_lost_or_first_ ? 0 : next_time();
+    next = lost_behaviors_ != 0 ? 0 : next_time();
   }
 }
 
@@ -99,7 +98,7 @@ void ProcessingLayer::pass() {
   layers_.arbiter.note_halted(layers_.control.halted());
   const ActuatorMask halted = layers_.control.take_halted() & layers_.arbiter.owned();
   layers_.triggers.settle(now);
-  const bool lost_or_first = is_lost_or_first_;
+  const bool lost_or_first = (lost_behaviors_ | unstarted_) != 0;
   const bool anyway = lost_or_first || halted != 0 || is_due(now);
   if (!latch(time, now, anyway)) return;
   set_due_ = now + 1;
@@ -110,7 +109,6 @@ void ProcessingLayer::pass() {
   if (lost_or_first) [[unlikely]] {
     interrupt_lost(std::exchange(lost_behaviors_, 0));
     woken_ = std::exchange(unstarted_, 0);
-    is_lost_or_first_ = false;
   }
   if (halted != 0) interrupt_halted(halted);
   find_concerned();
@@ -312,7 +310,6 @@ void ProcessingLayer::retire(const ProgramThreads::Member& member) {
     case kernel::Category::behavior:
       layers_.behaviors.retire(member.index);
       lost_behaviors_ |= bit<BehaviorMask>(member.index);
-      is_lost_or_first_ = true;
       break;
     case kernel::Category::control:
       layers_.control.retire(member.index);

@@ -214,7 +214,6 @@ private:
   BehaviorMask unstarted_ = 0;       // with something to do before the first reading
   std::atomic<std::uint32_t> passes_ = 0;
   std::atomic<bool> in_pass_ = false;
-  bool is_lost_or_first_ = false;  // there are lost or unstarted behaviours
   LinkShare link_share_;
   bool saves_no_work_ = false;  // in builds for tests: see is_news() and has_sole_turn()
 };

@@ -29,6 +29,10 @@ struct Pool {
     }
     return last;
   }
+  void check(unsigned count, unsigned handed) const {
+    CHECK(queue.count == count);
+    CHECK(queue.handed == handed);
+  }
   // All places are free again.
   void check_all_free() {
     CommandPool::Queue all;
@@ -50,15 +54,15 @@ TEST_CASE("commands leave their queue in order, and only when they were handed o
   const Command* const first = test.push(1);
   test.queue.hand_over();
   const Command* const second = test.push(1);
-  CHECK(test.queue.handed == 1);
+  test.check(2, 1);
   CHECK(test.queue.has_staged());
   CHECK(&CommandPool::front(test.queue) == first);
   test.pool.pop(test.queue);
-  CHECK(test.queue.handed == 0);
+  test.check(1, 0);
   test.queue.hand_over();
   CHECK(&CommandPool::front(test.queue) == second);
   test.pool.pop(test.queue);
-  CHECK(test.queue.count == 0);
+  test.check(0, 0);
   test.check_all_free();
 }
 
@@ -68,11 +72,10 @@ TEST_CASE("what was handed over goes, and what is staged stays") {
   test.queue.hand_over();
   const Command* const staged = test.push(1);
   test.pool.drop_handed(test.queue);
-  CHECK(test.queue.handed == 0);
-  CHECK(test.queue.count == 1);
+  test.check(1, 0);
   CHECK(&CommandPool::front(test.queue) == staged);
   test.pool.drop_staged(test.queue);
-  CHECK(test.queue.count == 0);
+  test.check(0, 0);
   test.check_all_free();
 }
 
@@ -85,8 +88,7 @@ TEST_CASE("what waits goes, and its actuator sees no more than is left") {
   test.queue.begun = GENERATE(false, true);
   test.pool.drop_waiting(test.queue);
   const unsigned left = test.queue.begun ? 1 : 0;
-  CHECK(test.queue.count == left);
-  CHECK(test.queue.handed == left);
+  test.check(left, left);
   if (left != 0) CHECK(&CommandPool::front(test.queue) == first);
   const Command* const next = test.push(1);
   test.queue.hand_over();

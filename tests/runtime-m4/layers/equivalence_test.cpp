@@ -93,32 +93,40 @@ std::string robot_with_servos() {
   return robot;
 }
 
+// Calls compare(usual, other, what) for the outcomes of each drawn program both ways; `what` says which program it is.
+template <class Compare>
+void each_drawn(const std::string& robot, Way other, Compare compare) {
+  unsigned seed = 0;
+  for (const std::string& rsl : robosync::testing::drawn_programs()) {
+    const compiler::Result result = compiler::compile({"drawn.rsl", rsl}, {"robot.json", robot});
+    if (result.image.empty()) continue;
+    const auto usual = run(result.image, ++seed, Way::usual);
+    const auto different = run(result.image, seed, other);
+    if (usual && different)
+      compare(*usual, *different, "seed " + std::to_string(seed) + "\n" + rsl + "\n");
+  }
+}
+
 }  // namespace
 
 TEST_CASE("no program can tell whether all rules are evaluated or only those concerned") {
   std::uint64_t concerned = 0;
   std::uint64_t all = 0;
-  unsigned seed = 0;
   unsigned compared = 0;
   unsigned tripped = 0;  // by a sensor that was silent, or too warm
-  const std::string robot = robosync::testing::drawn_robot();
-  for (const std::string& rsl : robosync::testing::drawn_programs()) {
-    const compiler::Result result = compiler::compile({"drawn.rsl", rsl}, {"robot.json", robot});
-    if (result.image.empty()) continue;
-    const auto few = run(result.image, ++seed, Way::usual);
-    const auto every = run(result.image, seed, Way::evaluates_all);
-    if (!few || !every) continue;
-    if (few->lines != every->lines) {
-      INFO("seed " << seed << "\n" << rsl << "\n" << parting(*few, *every));
+  const auto compare = [&](const Outcome& few, const Outcome& every, const std::string& what) {
+    if (few.lines != every.lines) {
+      INFO(what << parting(few, every));
       FAIL("the traces differ");
     }
     ++compared;
-    tripped += std::ranges::count_if(few->lines, [](const std::string& line) {
+    tripped += std::ranges::count_if(few.lines, [](const std::string& line) {
                  return line.find(" trip ") != std::string::npos;
                }) > 0;
-    concerned += few->evaluations;
-    all += every->evaluations;
-  }
+    concerned += few.evaluations;
+    all += every.evaluations;
+  };
+  each_drawn(robosync::testing::drawn_robot(), Way::evaluates_all, compare);
   CHECK(compared > 200);
   CHECK(tripped > 50);
   CHECK(concerned > 0);
@@ -127,23 +135,17 @@ TEST_CASE("no program can tell whether all rules are evaluated or only those con
 
 // Without a listener, commands are sent before other things are done that follow from a reading.
 TEST_CASE("no program can tell whether anybody listens to the trace") {
-  unsigned seed = 0;
   unsigned moved = 0;
   std::size_t heard = 0;
-  const std::string robot = robot_with_servos();
-  for (const std::string& rsl : robosync::testing::drawn_programs()) {
-    const compiler::Result result = compiler::compile({"drawn.rsl", rsl}, {"robot.json", robot});
-    if (result.image.empty()) continue;
-    const auto usual = run(result.image, ++seed, Way::usual);
-    const auto unheard = run(result.image, seed, Way::unheard);
-    if (!usual || !unheard) continue;
-    INFO("seed " << seed << "\n" << rsl);
-    REQUIRE(unheard->writes == usual->writes);
-    REQUIRE(unheard->lines.size() <= usual->lines.size());
-    REQUIRE(std::equal(unheard->lines.rbegin(), unheard->lines.rend(), usual->lines.rbegin()));
-    moved += usual->writes.empty() ? 0 : 1;
-    heard += unheard->lines.size();
-  }
+  const auto compare = [&](const Outcome& usual, const Outcome& unheard, const std::string& what) {
+    INFO(what);
+    REQUIRE(unheard.writes == usual.writes);
+    REQUIRE(unheard.lines.size() <= usual.lines.size());
+    REQUIRE(std::equal(unheard.lines.rbegin(), unheard.lines.rend(), usual.lines.rbegin()));
+    moved += usual.writes.empty() ? 0 : 1;
+    heard += unheard.lines.size();
+  };
+  each_drawn(robot_with_servos(), Way::unheard, compare);
   CHECK(moved > 100);
   CHECK(heard > 10'000);
 }

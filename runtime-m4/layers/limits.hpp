@@ -1,4 +1,4 @@
-// Keeps orders inside what an actuator may do.
+// The limits of an actuator, applied to an order.
 #pragma once
 
 #include "runtime-m4/drivers/order.hpp"
