@@ -77,22 +77,17 @@ public:
   [[gnu::always_inline]] bool is_free(ActuatorMask actuators) const {
     return (actuators & (owned_ | halted_)) == 0;
   }
-  // A trigger of `rule` for this side certainly wins: the actuators are free, or held by the rule's other side. False: decide().
+  // A trigger of `rule` for this side certainly wins: it takes nothing but from the rule's other side. False: see decide().
   [[gnu::always_inline]] bool surely_wins(unsigned rule, Side side, ActuatorMask actuators) const {
-    if (!runs(rule)) return is_free(actuators);
-    const bool again = works(rule) && this->side(rule) == side;
-    const ActuatorMask others = owned_ & ~holdings_[rule].actuators;
-    return !again && (actuators & (others | halted_)) == 0;
+    return is_free_for(rule, actuators) && !works_again(rule, side);
   }
   [[nodiscard]] bool wins(const Claim& claim) const {
     return is_free(claim) || decide(claim).wins();
   }
   [[nodiscard]] Decision decide(const Claim& claim) const {
-    const bool again = works(claim.rule) && side(claim.rule) == claim.side;
-    if (again && !claim.restarting) return {.outcome = Outcome::ignored, .owner = claim.behavior};
-    // Each actuator has one owner, so its own rule may hold all that are not free.
-    const ActuatorMask mine = runs(claim.rule) ? holdings_[claim.rule].actuators : 0;
-    if (is_free(claim.actuators & ~mine) && (claim.actuators & halted_) == 0) [[likely]]
+    if (works_again(claim.rule, claim.side) && !claim.restarting)
+      return {.outcome = Outcome::ignored, .owner = claim.behavior};
+    if (is_free_for(claim.rule, claim.actuators)) [[likely]]
       return {};
     return decide_among_owners(claim);
   }
@@ -124,6 +119,15 @@ public:
   ActuatorMask owned() const { return owned_; }  // by all running rules; each has one owner
 
 private:
+  // Nobody else holds one of them: each actuator has one owner.
+  [[gnu::always_inline]] bool is_free_for(unsigned rule, ActuatorMask actuators) const {
+    const ActuatorMask mine = runs(rule) ? holdings_[rule].actuators : 0;
+    return (actuators & ((owned_ & ~mine) | halted_)) == 0;
+  }
+  // That side of it is at work already.
+  [[gnu::always_inline]] bool works_again(unsigned rule, Side side) const {
+    return works(rule) && this->side(rule) == side;
+  }
   Decision decide_among_owners(const Claim& claim) const;
   bool may_take(const Claim& claim, unsigned from) const;
 

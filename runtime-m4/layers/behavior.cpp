@@ -320,7 +320,6 @@ void BehaviorLayer::run_sole_turn(unsigned rule, vm::Machine& machine) {
 // The common cases: its response takes actuators from nobody, or only from its own other side.
 [[gnu::always_inline]] inline bool BehaviorLayer::surely_begins(unsigned rule, Side side) const {
   return response_of(rule, side) != vm::kNoIndex &&
-         resume_points_[rule].pause == vm::Pause::ended &&
          layers_.arbiter.surely_wins(rule, side, actuators_of(rule, side));
 }
 

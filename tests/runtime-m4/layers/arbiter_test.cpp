@@ -163,6 +163,7 @@ TEST_CASE("the arbiter decides as the language says, over many steps") {
         const Decision decision = table.arbiter.decide(c);
         const auto expected = model.serve({r, behavior_of[r], side, as_set(mask)});
         RC_ASSERT(decision.wins() == expected.wins);
+        RC_ASSERT(decision.wins() || !table.arbiter.surely_wins(r, side, mask));
         RC_ASSERT(table.ended_by(c, decision) == expected.interrupted);
         table.apply(c, decision);
         RC_ASSERT(table.is_sound());
@@ -197,6 +198,8 @@ TEST_CASE("a rule that runs already loses to its own behaviour, and runs on") {
   CHECK(decision.outcome == Outcome::ignored);
   CHECK(decision.owner == 1);
   CHECK(table.ended_by(again, decision).empty());
+  CHECK_FALSE(table.arbiter.surely_wins(2, Side::then, 0b1));
+  CHECK(table.arbiter.surely_wins(2, Side::otherwise, 0b1));
 }
 
 TEST_CASE("what was won in this step is not lost in it to the same behaviour") {
@@ -214,6 +217,17 @@ TEST_CASE("nobody gets what is halted, and the claim loses to who has halted it"
   CHECK_FALSE(decision.wins());
   CHECK(decision.owner == Decision::kHalter);
   CHECK(table.arbiter.decide(claim(0, 3, 0b01)).wins());
+}
+
+TEST_CASE("nor does a rule get what is halted from its own other side") {
+  Table table;
+  table.serve(claim(2, 1, 0b1));
+  table.arbiter.end_step();
+  table.arbiter.note_halted(0b1);
+  const Decision decision = table.arbiter.decide(claim(2, 1, 0b1, Side::otherwise));
+  CHECK_FALSE(decision.wins());
+  CHECK(decision.owner == Decision::kHalter);
+  CHECK_FALSE(table.arbiter.surely_wins(2, Side::otherwise, 0b1));
 }
 
 TEST_CASE("responses without actuators never conflict") {
