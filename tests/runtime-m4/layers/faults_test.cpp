@@ -226,6 +226,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a response has no effect if its behaviour is stopped before it rests, whoever listens") {
+  const bool heard = GENERATE(false, true);
+  CAPTURE(heard);
+  Rig rig;
+  test::Interrupts interrupts;
+  start(rig);
+  rig.listen(heard);
+  interrupts.before_call = [&](std::uint32_t number) {
+    if (number == kRest && running(rig) == "low") rig.kernel.stop(rig.thread("low"));
+  };
+  rig.feed(1, 30);
+  rig.run(1000);
+  CHECK(rig.status().faults == 1);
+  CHECK(rig.board.pwm_read(3) == 700);  // the other behaviour's
+  CHECK(rig.board.pulse(4) == 0);
+}
+
 TEST_CASE("a damaged behaviour that rests in the middle of its task is stopped, the others go on") {
   const bool reports = GENERATE(false, true);
   CAPTURE(reports);
