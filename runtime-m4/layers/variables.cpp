@@ -72,31 +72,31 @@ template <Variables::Rank rank>
 void Variables::stage_all(const Written& written, const vm::Behavior& behavior,
                           const Snapshot& before) {
   const std::uint8_t* const inputs = &image_->inputs[behavior.first_input];
-  for (std::uint32_t left = written.assigned | written.shifted; left != 0; left &= left - 1) {
-    const auto cell = static_cast<unsigned>(std::countr_zero(left));
-    if (cell >= behavior.input_count) break;
+  const auto channels = static_cast<unsigned>(image_->channels.size());
+  const unsigned count = behavior.input_count;
+  const std::uint32_t cells = count < 32 ? (std::uint32_t{1} << count) - 1 : UINT32_MAX;
+  each_bit((written.assigned | written.shifted) & cells, [&](unsigned cell) {
     const std::uint8_t input = inputs[cell];
-    if (input < image_->channels.size()) continue;
+    if (input < channels) return;
     const bool set = has(written.assigned, cell);
-    const vm::Value value =
-        set ? written.frame[cell] : vm::subtract(written.frame[cell], before.value(input));
-    if (value == vm::kUnknown) continue;
-    stage_one<rank>({.variable = static_cast<std::uint8_t>(input - image_->channels.size()),
-                     .set = set,
-                     .value = value});
-  }
+    vm::Value value = written.frame[cell];
+    if (!set) [[unlikely]]
+      value = vm::subtract(value, before.value(input));
+    if (value != vm::kUnknown) stage_one<rank>(input - channels, set, value);
+  });
 }
 
 template <Variables::Rank rank>
-inline void Variables::stage_one(const Write& write) {
-  const auto mine = bit<VariableMask>(write.variable);
+[[gnu::always_inline]] inline void Variables::stage_one(unsigned variable, bool set,
+                                                        vm::Value value) {
+  const auto mine = bit<VariableMask>(variable);
   const auto lock = kernel_.lock();
   if (rank == Rank::below_those_staged && (set_ & mine) != 0) return;
-  vm::Value& sum = sums_[write.variable];
-  const bool adds = (staged_ & mine) != 0 && !(rank == Rank::above_all && write.set);
-  sum = adds ? saturated(std::int64_t{sum} + write.value) : write.value;
+  vm::Value& sum = sums_[variable];
+  const bool adds = (staged_ & mine) != 0 && !(rank == Rank::above_all && set);
+  sum = adds ? saturated(std::int64_t{sum} + value) : value;
   staged_ |= mine;
-  if (write.set) set_ |= mine;
+  if (set) set_ |= mine;
 }
 
 bool Variables::take(unsigned variable, Write& write) {

@@ -67,8 +67,9 @@ private:
   enum class Rank : std::uint8_t { below_those_staged, above_all };
   template <Rank rank>
   void stage_all(const Written& written, const vm::Behavior& behavior, const Snapshot& before);
+  // What is set becomes the new value; otherwise it is a difference.
   template <Rank rank>
-  void stage_one(const Write& write);
+  void stage_one(unsigned variable, bool set, vm::Value value);
   bool take(unsigned variable, Write& write);
   static vm::Value result_of(const vm::Variable& wiring, vm::Value before, const Write& write);
 

@@ -44,6 +44,7 @@ struct RuntimePeer {
   static std::atomic<bool>& finished(Runtime& runtime) {
     return *runtime.shared_.workspace.finished;
   }
+  static layers::Result& result(Runtime& runtime) { return *runtime.shared_.workspace.result; }
 };
 
 }  // namespace robosync

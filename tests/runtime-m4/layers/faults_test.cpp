@@ -243,6 +243,34 @@ TEST_CASE("a response has no effect if its behaviour is stopped before it rests,
   CHECK(rig.board.pulse(4) == 0);
 }
 
+TEST_CASE("a damaged behaviour sets no variable that is not its own") {
+  Rig rig;
+  test::Interrupts interrupts;
+  const auto image = test::compile(R"(
+REMEMBER n = 0
+REMEMBER m = 0
+BEHAVIOR high PRIORITY 20
+  WHEN near X > 10
+  DO SET n TO 7
+  END
+END
+BEHAVIOR low PRIORITY 10
+  WHEN m > 5
+  DO LIGHT lamp TO 50%
+  END
+END
+)",
+                                   kThreeOutputs);
+  REQUIRE(rig.activate(image).ok());
+  rig.run(0);
+  interrupts.before_call = [&](std::uint32_t number) {
+    if (number == kRest && running(rig) == "high") RuntimePeer::result(rig.runtime).assigned = ~0U;
+  };
+  rig.feed(0, 20);
+  rig.run(100);
+  CHECK(rig.only("set") == "1 #3 set n 7\n");
+}
+
 TEST_CASE("a damaged behaviour that rests in the middle of its task is stopped, the others go on") {
   const bool reports = GENERATE(false, true);
   CAPTURE(reports);
