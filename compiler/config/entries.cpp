@@ -157,10 +157,14 @@ bool is_fed_here(const Device* device, const Board::Part* part) {
   return device != nullptr && part == nullptr && vm::is_of_board(device->sensor.driver);
 }
 
-// The keys of the wiring: wiring_of() has those that a device takes.
+// The keys of the wiring: keys_of_wiring() has those that a device takes.
 constexpr std::array<std::string_view, 10> kWiringKeys = {
     "bus",  "address",         "pin",  "pins", "channel", "enable", "trigger",
     "echo", "pulses_per_turn", "wheel"};
+
+bool has(const auto& keys, std::string_view key) {
+  return std::ranges::find(keys, key) != std::ranges::end(keys);
+}
 
 }  // namespace
 
@@ -172,12 +176,13 @@ bool may_have(const Fields& fields, bool is_sensor, std::string_view key) {
                                : type != nullptr ? default_device(type->text, is_sensor)
                                                  : nullptr;
   if (device == nullptr) return true;
-  if (std::ranges::find(kWiringKeys, key) != kWiringKeys.end())
+  if (has(kWiringKeys, key))
     return is_virtual || (key == "pins" && vm::counts_edges(device->sensor.driver)) ||
-           wiring_of(*device).find("`" + std::string(key) + "`") != std::string::npos;
+           has(keys_of_wiring(*device), key);
   if (key == "register") return device->has_registers();
   if (key == "format") return device->sensor.driver == vm::DriverId::spi_register;
-  if (key == "active") return device->type == "GPIO" && wiring_of(*device) == "`pin`";
+  if (key == "active")
+    return device->type == "GPIO" && keys_of_wiring(*device) == std::vector<std::string>{"pin"};
   return is_sensor || may_have(*device, key);
 }
 

@@ -42,7 +42,9 @@ struct ChipWiring {
   std::uint16_t channel = 0;
 };
 
-// "`bus` and `address`, `0x68 to 0x69`": the keys that say how it is wired; empty: it has none.
+// The keys that say how it is wired, such as "bus" and "address"; empty: it has none.
+[[nodiscard]] std::vector<std::string> keys_of_wiring(const Device& device);
+// They and its addresses in words: "`bus` and `address`, `0x68 to 0x69`".
 [[nodiscard]] std::string wiring_of(const Device& device);
 
 // Reads the buses, addresses and pins of one robot on `board`; each pin may be used once.

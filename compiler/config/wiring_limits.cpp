@@ -36,19 +36,21 @@ const json::Value* input_of(const Fields& fields) {
 }
 
 // The keys that a device needs instead of those of its type.
-std::string_view own_keys(vm::DriverId driver) {
-  if (vm::is_by_echo(driver)) return "`trigger` and `echo`";
-  if (vm::counts_edges(driver)) return "`pin`, `pulses_per_turn` and `wheel`";
-  if (vm::drives_channel(driver)) return "`bus`, `address`, `channel` and `enable`";
-  if (vm::drives_wheels(driver)) return "`left`, `right`, `speed` and `track`";
-  if (vm::has_two_pins(driver)) return "`pins`";
-  return vm::is_strip(driver) ? "`pin` and `lights`" : "";
+std::vector<std::string> own_keys(vm::DriverId driver) {
+  if (vm::is_by_echo(driver)) return {"trigger", "echo"};
+  if (vm::counts_edges(driver)) return {"pin", "pulses_per_turn", "wheel"};
+  if (vm::drives_channel(driver)) return {"bus", "address", "channel", "enable"};
+  if (vm::drives_wheels(driver)) return {"left", "right", "speed", "track"};
+  if (vm::has_two_pins(driver)) return {"pins"};
+  if (vm::is_strip(driver)) return {"pin", "lights"};
+  return {};
 }
 
-std::string_view keys_of(const WiringType& type) {
-  if (!type.bus) return "`pin`";
-  if (type.address) return "`bus` and `address`";
-  return type.pin ? "`bus` and `pin`" : "`bus`";
+std::vector<std::string> keys_of(const WiringType& type) {
+  if (!type.bus) return {"pin"};
+  if (type.address) return {"bus", "address"};
+  if (type.pin) return {"bus", "pin"};
+  return {"bus"};
 }
 
 bool is_part(vm::DriverId driver) {
@@ -57,13 +59,17 @@ bool is_part(vm::DriverId driver) {
 
 }  // namespace
 
-std::string wiring_of(const Device& device) {
+std::vector<std::string> keys_of_wiring(const Device& device) {
   const vm::DriverId driver = device.is_sensor ? device.sensor.driver : device.actuator.driver;
   if (!device.has_driver || is_part(driver)) return {};
-  std::string text(own_keys(driver));
-  if (text.empty())
-    text = keys_of(*std::ranges::find(wiring_types(), device.type, &WiringType::name));
-  if (!device.addresses.empty()) text += ", " + list_names(listed(device), "or");
+  std::vector<std::string> keys = own_keys(driver);
+  return keys.empty() ? keys_of(*std::ranges::find(wiring_types(), device.type, &WiringType::name))
+                      : keys;
+}
+
+std::string wiring_of(const Device& device) {
+  std::string text = list_names(keys_of_wiring(device));
+  if (!text.empty() && !device.addresses.empty()) text += ", " + list_names(listed(device), "or");
   return text;
 }
 
