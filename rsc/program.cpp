@@ -245,9 +245,21 @@ policy::BoardMemory memory_for(std::span<const std::byte> bytes) {
   return board ? memory_of(*board) : board_memory();
 }
 
+const char* given_option(const CompileOptions& options) {
+  if (!options.config.empty()) return "--config";
+  if (!options.optimize) return "-O0";
+  const bool lints = !options.lints.levels.empty() || options.lints.deny_warnings;
+  return lints ? "--allow, --warn or --deny" : nullptr;
+}
+
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
+    if (const char* const given = given_option(options))
+      throw Failure(Exit::usage,
+                    fmt::format("{} says how to compile a program, but {} is an image already: "
+                                "name the program, such as {}",
+                                given, file, program_beside(file)));
     const policy::BoardMemory memory = memory_for(bytes);
     Program program(std::move(bytes), file, memory, {{file}, {}, {}, {}, {}});
     if (options.judged == Judged::by_time) judge_time(program, file);  // the board checks memory

@@ -52,6 +52,9 @@ struct CompileOptions {
                                                          const std::string& user,
                                                          const std::string& file);
 
+// The first of these options that the user gave: of no use where nothing is compiled. Null: none.
+[[nodiscard]] const char* given_option(const CompileOptions& options);
+
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
 [[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options,
                                             const Texts& texts = Texts());
@@ -115,7 +118,8 @@ private:
   Origin origin_;
 };
 
-// `file` is source or an image. Diagnostics go to stderr. Throws Failure (program) if it has errors.
+// `file` is source or an image. Diagnostics go to stderr. Throws Failure (program) if it has errors, and Failure (usage) for an
+// image with options for the compiler.
 [[nodiscard]] Program load_program(const std::string& file, const CompileOptions& options);
 
 // The program without its debug section, which the board does not use.

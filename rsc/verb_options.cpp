@@ -108,6 +108,10 @@ void refuse_pair(bool given, const char* one, const char* other) {
   if (given) throw Failure(Exit::usage, fmt::format("{} and {} do not go together", one, other));
 }
 
+void refuse_alone(const char* given, const char* other) {
+  if (given != nullptr) throw Failure(Exit::usage, fmt::format("{} goes with {}", given, other));
+}
+
 void add_duration_option(Options& options, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,
                          const std::string& description) {

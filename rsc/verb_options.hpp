@@ -30,6 +30,8 @@ void add_compile_options(Options& options, CompileOptions& how);
 void add_quiet_option(Options& options, bool& quiet, const std::string& description);
 // Throws Failure (usage) if both options are given, which do not go together.
 void refuse_pair(bool given, const char* one, const char* other);
+// Throws Failure (usage) if `given`, an option that means nothing without the other one, is not null.
+void refuse_alone(const char* given, const char* other);
 void add_duration_option(Options& options, const std::string& name,
                          std::optional<std::chrono::milliseconds>& duration,
                          const std::string& description);

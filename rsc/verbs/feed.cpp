@@ -282,6 +282,12 @@ void check_what_is_asked(const FeedOptions& options) {
   if (options.readings.empty() && options.scenario.empty()) {
     throw Failure(Exit::usage, "name a reading, as in touch.LEVEL=2, or a --scenario");
   }
+  if (options.upload.empty()) {
+    constexpr const char* upload = "--upload FILE: without it, nothing is uploaded";
+    refuse_alone(options.fresh ? "--fresh" : nullptr, upload);
+    refuse_alone(options.anyway ? "--anyway" : nullptr, upload);
+    refuse_alone(given_option(options.how), upload);
+  }
   if (options.record.empty()) return;
   if (!options.watch) throw Failure(Exit::usage, "--record records what --watch TIME shows");
   check_output({options.record, FileKind::replay}, {options.scenario, options.upload});

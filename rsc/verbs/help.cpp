@@ -4,6 +4,7 @@
 #include <string>
 
 #include "rsc/cli.hpp"
+#include "rsc/failure.hpp"
 #include "rsc/usage.hpp"
 #include "rsc/verb.hpp"
 
@@ -16,6 +17,9 @@ void add_help(Options& options) {
   auto man = std::make_shared<bool>(false);
   options.flag("--man", *man, "everything, as a man page");
   options.runs([verb, man] {
+    if (*man && !verb->empty())
+      throw Failure(Exit::usage,
+                    "--man prints one page about all verbs: leave out `" + *verb + "`, or --man");
     if (*man)
       std::cout << manual_page(all_usage());
     else

@@ -40,8 +40,8 @@ std::unique_ptr<Viewer> view_of(const MonitorOptions& options) {
 }
 
 void monitor(const MonitorOptions& options) {
-  if (!options.how.config.empty() && options.upload.empty())
-    throw Failure(Exit::usage, "--config goes with --upload FILE, which is compiled for it");
+  if (options.upload.empty())
+    refuse_alone(given_option(options.how), "--upload FILE, which is compiled for it");
   check_outputs({{options.record, FileKind::replay}, {options.html}},
                 {options.upload, options.how.config});
   const Place place{options.port, options.key};

@@ -117,6 +117,8 @@ Json json_of(const RecordedProgram& recorded, std::span<const std::byte> image,
 }
 
 void replay_all(const ReplayOptions& options) {
+  if (options.program.empty())
+    refuse_alone(given_option(options.how), "--program FILE: without it, nothing is compiled");
   const RecordedRun run = recording_of(options);
   const std::vector<std::byte> image = image_of(options);
   Json reports = Json::array();

@@ -231,6 +231,38 @@ TEST_CASE("an option that is given nothing is refused") {
   }
 }
 
+TEST_CASE("an option that would do nothing is refused, with the reason") {
+  const test::Folder folder;
+  const std::string program = folder.write("robot.rsl", "AT START DO\n  LOG \"a\"\nEND\n");
+  const std::string config = folder.write("robot.json", "{}");
+  const std::string image = folder.path("robot.rsb");
+  REQUIRE(test::rsc({"compile", program, "-o", image}).exit == 0);
+  struct Case {
+    std::vector<std::string> arguments;
+    const char* why;
+  };
+  const std::vector<Case> cases = {
+      {{"run", image, "--config", config}, "--config says how to compile"},
+      {{"dump", image, "-O0"}, "-O0 says how to compile"},
+      {{"run", image, "--deny", "warnings"}, "--allow, --warn or --deny says how to compile"},
+      {{"upload", image, "--config", config, "--port", "unix:/nowhere"}, "name the program"},
+      {{"feed", "a=1", "--fresh", "--port", "unix:/nowhere"}, "--fresh goes with --upload FILE"},
+      {{"feed", "a=1", "--anyway", "--port", "unix:/nowhere"}, "--anyway goes with --upload FILE"},
+      {{"feed", "a=1", "--config", config, "--port", "unix:/nowhere"},
+       "--config goes with --upload FILE"},
+      {{"monitor", "--config", config, "--port", "unix:/nowhere"},
+       "--config goes with --upload FILE"},
+      {{"replay", "day.jsonl", "--config", config}, "--config goes with --program FILE"},
+      {{"help", "--man", "run"}, "--man prints one page about all verbs: leave out `run`"}};
+  for (const Case& one : cases) {
+    const Outcome outcome = test::rsc(one.arguments);
+    CAPTURE(one.why, outcome.err);
+    CHECK(outcome.exit == 2);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(one.why));
+  }
+}
+
 TEST_CASE("- is stdin for the verbs that say so, and no output") {
   const InFolder here;
   for (const char* verb : {"run", "test", "explain", "compile", "dump", "fix"}) {
