@@ -30,6 +30,12 @@ bool says(const Json& capabilities, std::initializer_list<const char*> keys) {
   return value->is_boolean() && value->get<bool>();
 }
 
+// Not the words of the JSON library, which nobody who wrote the message knows.
+std::string wrong_parameters(const std::string& method) {
+  return "the parameters of `" + method +
+         "` lack something, or something in them is of a wrong kind";
+}
+
 bool lists(const Json& list, std::string_view word) {
   return list.is_array() && std::ranges::any_of(list, [&](const Json& one) { return one == word; });
 }
@@ -115,8 +121,8 @@ void Server::answer(const Json& message) {
     send({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
   } catch (const Refusal& refusal) {
     send_error(id, error::request_failed, refusal.what());
-  } catch (const Json::exception& wrong) {
-    send_error(id, error::invalid_params, wrong.what());
+  } catch (const Json::exception&) {
+    send_error(id, error::invalid_params, wrong_parameters(method));
   } catch (const std::exception& failure) {
     send_error(id, error::internal_error, failure.what());
   }
@@ -131,10 +137,10 @@ void Server::notify(const std::string& method, const Json& params) {
   if (phase_ != Phase::up || found == notifications().end()) return;
   try {
     (void)found->second(*this, params);
-  } catch (const Json::exception& wrong) {
+  } catch (const Json::exception&) {
     send({{"jsonrpc", "2.0"},
           {"method", "window/logMessage"},
-          {"params", {{"type", 1}, {"message", method + ": " + wrong.what()}}}});
+          {"params", {{"type", 1}, {"message", wrong_parameters(method)}}}});
   }
 }
 

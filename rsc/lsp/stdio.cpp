@@ -35,11 +35,11 @@ class Line {
 public:
   Line(int in, int out)
       : in_(in), server_([this, out](const std::string& message) {
-          open_ = open_ && write_all(out, framed(message));
+          heard_ = heard_ && write_all(out, framed(message));
         }) {}
 
   int serve() {
-    while (open_ && !server_.exit_code()) {
+    while (open_ && heard_ && !server_.exit_code()) {
       const bool waits = !has_work_ && !server_.is_dirty();
       if (server_.waiting() < kMostWaiting && has_come(waits)) {
         read_some();
@@ -52,6 +52,7 @@ public:
     while (!server_.exit_code() && server_.step()) {
       // Messages that came before the line was closed are answered.
     }
+    if (heard_ && !server_.exit_code() && server_.is_dirty()) server_.idle();
     return server_.exit_code().value_or(broken_ ? 1 : server_.exit_code_at_end());
   }
 
@@ -99,7 +100,8 @@ private:
   Server server_;
   FrameReader frames_;
   std::array<char, kBlock> block_{};
-  bool open_ = true;
+  bool open_ = true;   // more may come
+  bool heard_ = true;  // the editor takes what is sent: it may do so when nothing more comes
   bool broken_ = false;
   bool has_work_ = false;
 };

@@ -2,11 +2,13 @@
 
 import json
 import random
+import re
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-from client import PATIENCE, Server, offset_of, position, range_of, uri
+from client import PATIENCE, RSC, Server, offset_of, position, range_of, uri
 from programs import ROBOT, large
 
 PROGRAM = "% \u00e4\U0001F916\nWHEN touch LEVEL > 3\nDO MOVE arms TO 30deg OVER 1s\nEND\n"
@@ -75,6 +77,21 @@ class Session(unittest.TestCase):
         server.ask("shutdown")
         server.process.stdin.close()
         self.assertEqual(server.process.wait(PATIENCE), 0)
+
+    def test_what_came_before_the_end_of_the_line_is_answered(self):
+        asked = [{"id": 1, "method": "initialize", "params": {"capabilities": {}}},
+                 {"method": "textDocument/didOpen",
+                  "params": {"textDocument": {"uri": uri(self.program), "version": 1, "text": PROGRAM}}},
+                 {"id": 2, "method": "textDocument/hover", "params": {}},
+                 {"id": 3, "method": "textDocument/foldingRange", "params": {"textDocument": {"uri": uri(self.program)}}}]
+        ran = subprocess.run([RSC, "lsp"], input=b"".join(message({"jsonrpc": "2.0", **one}) for one in asked),
+                             stdout=subprocess.PIPE, timeout=PATIENCE, check=False)
+        said = [json.loads(body) for body in re.findall(rb"\r\n\r\n(\{.*?\})(?=Content-Length|$)", ran.stdout, re.S)]
+        self.assertEqual([one["id"] for one in said if "id" in one], [1, 2, 3])
+        self.assertEqual(said[1]["error"]["code"], -32602)
+        self.assertNotIn("json", said[1]["error"]["message"])
+        self.assertEqual([one["method"] for one in said if "method" in one], ["textDocument/publishDiagnostics"])
+        self.assertEqual(ran.returncode, 1)
 
     def test_a_header_that_is_none_ends_it_with_an_error(self):
         server = self.server(initialize=False)

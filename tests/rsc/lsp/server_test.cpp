@@ -76,6 +76,9 @@ TEST_CASE("what is no message is answered with an error, and the next one is rea
   CHECK(bare.code(R"({"id":4,"method":"textDocument/none"})") == error::method_not_found);
   CHECK(bare.code(R"({"id":"five","method":"textDocument/hover"})") == error::invalid_params);
   CHECK(bare.heard.back().at("id") == "five");
+  CHECK(bare.heard.back().at("error").at("message") ==
+        "the parameters of `textDocument/hover` lack something, or something in them is of a wrong "
+        "kind");
   CHECK(
       bare.code(R"({"id":6,"method":"textDocument/hover","params":{"textDocument":{"uri":7}}})") ==
       error::invalid_params);
