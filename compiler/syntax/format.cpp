@@ -3,6 +3,7 @@
 #include "compiler/syntax/format.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -118,7 +119,7 @@ struct Line {
   // The lexer warns that this may not be meant as a comment, because it is so near to the code: it stays there.
   bool is_doubtful = false;
   Table table = Table::none;
-  bool begins_item = false;  // outside all blocks
+  bool begins_item = false;  // outside all blocks, or right inside a BEHAVIOR
   bool is_long = false;      // … and the item has more lines
   bool is_apart = false;     // a blank line is above it
 
@@ -267,14 +268,21 @@ private:
     line.level = level_of(words.front().kind);
     line.table = table_of(words);
     line.cells = cells_of(words, line.table);
-    line.begins_item = blocks_.empty() && !is_within_statement();
-    if (line.begins_item)
-      item_ = lines_.size();
-    else
-      lines_[item_].is_long = true;
+    note_item(line, words.front().kind);
     for (std::size_t i = 0; i < words.size(); ++i)
       step(walk, line.level);
     lines_.push_back(std::move(line));
+  }
+
+  // The rules and variables of a BEHAVIOR are items of it; its END is no line of the last of them.
+  void note_item(Line& line, TokenKind first) {
+    const bool of_behavior = blocks_.size() == 1 && blocks_.back().opener == Kinds::BEHAVIOR;
+    const bool inside = of_behavior && first != Kinds::END;
+    line.begins_item = (blocks_.empty() || inside) && !is_within_statement();
+    if (!line.begins_item || inside) lines_[of_behavior ? behavior_ : item_].is_long = true;
+    if (!line.begins_item) return;
+    item_ = lines_.size();
+    if (!inside) behavior_ = item_;
   }
 
   // Passes the end of the line before, if it counts.
@@ -412,15 +420,18 @@ private:
 
   // A comment right above an item belongs to it.
   void separate_items() {
-    const Line* before = nullptr;
+    std::array<const Line*, 2> before{};  // outside all blocks, and inside the BEHAVIOR
     for (std::size_t at = 0; at < lines_.size(); ++at) {
       const Line& line = lines_[at];
       if (!line.begins_item) continue;
       std::size_t first = at;
       while (first > 0 && lines_[first - 1].is_comment())
         --first;
-      if (before != nullptr) lines_[first].is_apart = before->is_long || line.is_long;
-      before = &line;
+      const std::size_t inside = std::min<std::size_t>(line.level, 1);
+      if (before[inside] != nullptr)
+        lines_[first].is_apart = before[inside]->is_long || line.is_long;
+      before[inside] = &line;
+      if (inside == 0) before[1] = nullptr;
     }
   }
 
@@ -435,9 +446,10 @@ private:
   Diagnostics ignored_;
   const SourceFile& source_;
   Tokens all_, seen_;
-  std::size_t next_ = 0;  // in all_
-  std::size_t at_ = 0;    // in seen_
-  std::size_t item_ = 0;  // its first line, in lines_
+  std::size_t next_ = 0;      // in all_
+  std::size_t at_ = 0;        // in seen_
+  std::size_t item_ = 0;      // its first line, in lines_
+  std::size_t behavior_ = 0;  // … of the item outside all blocks
   std::vector<Place> places_;
   std::vector<Block> blocks_;
   std::vector<Line> lines_;

@@ -85,6 +85,20 @@ TEST_CASE("each kind of line has its place") {
   robosync::testing::expect_golden(folder / "after.rsl", after);
 }
 
+TEST_CASE("a blank line separates the rules of a BEHAVIOR, as it does items") {
+  const std::string head = "BEHAVIOR a PRIORITY 5\n";
+  const std::string rule = "  WHEN b\n  DO c\n  END\n", line = "  WHEN d DO e END\n";
+  const std::string number = "  REMEMBER f = 1\n", comment = "  # g\n", end = "END\n";
+  CHECK(styled(head + rule + rule + end) == head + rule + "\n" + rule + end);
+  CHECK(styled(head + line + line + end) == head + line + line + end);
+  CHECK(styled(head + number + number + line + rule + end) ==
+        head + number + number + line + "\n" + rule + end);
+  CHECK(styled(head + rule + comment + line + line + end) ==
+        head + rule + "\n" + comment + line + line + end);
+  CHECK(styled("LET h = 1\n" + head + line + end + head + line + end) ==
+        "LET h = 1\n\n" + head + line + end + "\n" + head + line + end);
+}
+
 TEST_CASE("one space around what calculates, whatever stood there") {
   const auto line = [](const std::string& text) {
     const std::string all = styled("AT START\nDO\n" + text + "\nEND\n");
