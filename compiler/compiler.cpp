@@ -88,6 +88,17 @@ Diagnostics without_warned(const Diagnostics& diagnostics) {
   return result;
 }
 
+void learn_words(const ir::Program& written, Robot& robot) {
+  for (const ir::LearnedWord& word : written.words)
+    robot.sensors[word.channel.sensor].channels[word.channel.channel].add_label(word.text);
+}
+
+// The LIMITs of the program, for those who ask about its robot: `rsc explain` and editors.
+void take_limits(const ir::Program& written, Robot& robot) {
+  for (const auto& [place, speed] : written.speed_limits)
+    robot.actuators[place].speed_limit = speed;
+}
+
 }  // namespace
 
 Result compile(Input program, Input configuration, const Options& options) {
@@ -102,9 +113,7 @@ Result compile(Input program, Input configuration, const Options& options) {
   ir::Program written;
   if (parsed.complete) {
     written = analyze(parsed.trees(), *parsed.robot, result.sources, diagnostics);
-    for (const ir::LearnedWord& word : written.words)
-      reading->robot->sensors[word.channel.sensor].channels[word.channel.channel].add_label(
-          word.text);
+    learn_words(written, *reading->robot);
     if (diagnostics.has_errors())
       diagnostics = without_clashes(without_warned(offer_modules(diagnostics)), result.sources);
     if (!diagnostics.has_errors())
@@ -125,6 +134,7 @@ Result compile(Input program, Input configuration, const Options& options) {
         result.units.variables[variable.name] = variable.unit;
     }
   }
+  if (reading->robot) take_limits(written, *reading->robot);
   diagnostics.doubt_names(result.sources);
   diagnostics.finish();
   return result;

@@ -109,7 +109,7 @@ private:
   void tell_what_moves() {
     if (robot_ == nullptr || std::ranges::none_of(robot_->actuators, &ActuatorConfig::moves))
       return;
-    say(0, "\nWhat moves, as robot.json says:");
+    say(0, "\nWhat moves, as robot.json and LIMITs say:");
     for (const ActuatorConfig& actuator : robot_->actuators) {
       if (!actuator.moves()) continue;
       say(kTextIndent,

@@ -540,6 +540,22 @@ TEST_CASE("explain: a program, a code, a wrong program, a code that does not exi
   CHECK_THAT(outcome.err, Contains("there is no diagnostic E0300"));
 }
 
+TEST_CASE("explain says at its end how fast the LIMITs of the program let a part move") {
+  const Folder folder;
+  (void)folder.write("robot.json", R"({"actuators": [
+    {"name": "left_arm", "type": "VIRTUAL", "device": "joint", "limits": {"SPEED": "20deg/s"}},
+    {"name": "right_arm", "type": "VIRTUAL", "device": "joint"}],
+    "groups": {"arms": ["left_arm", "right_arm"]}})");
+  const std::string program = folder.write("robot.rsl",
+                                           "LET slow = 40deg/s\nLIMIT arms SPEED TO 60deg/s\n"
+                                           "LIMIT right_arm SPEED TO slow\n"
+                                           "AT START DO\n  LOG \"a\"\nEND\n");
+  const Outcome outcome = test::rsc({"explain", program});
+  CHECK(outcome.exit == 0);
+  CHECK_THAT(outcome.out, Contains("  left_arm: It goes no faster than 20deg/s. In a halt") &&
+                              Contains("  right_arm: It goes no faster than 40deg/s. In a halt"));
+}
+
 TEST_CASE("explain takes a code without its zero or its letter") {
   for (const char* const word : {"E301", "0301", "e301", "301"})
     CHECK(test::rsc({"explain", word}).out == test::rsc({"explain", "E0301"}).out);

@@ -297,7 +297,7 @@ TEST_CASE("what moves has its limits, its halt and its release, and lamps have n
     {"name": "lamp", "device": "pwm", "pin": 6}, {"name": "face", "type": "VIRTUAL", "device": "face"}]})");
   CHECK_THAT(
       text,
-      Contains("\nWhat moves, as robot.json says:\n") &&
+      Contains("\nWhat moves, as robot.json and LIMITs say:\n") &&
           Contains(
               "  arm: It goes no faster than 100deg/s. Its speed changes by at most 200deg/s2. "
               "In a halt it goes limp; when its response ends, it goes to its rest position.\n") &&
