@@ -632,22 +632,40 @@ private:
     return change(stop_, 1, {{Kinds::ELSE, here}});
   }
 
-  // `touch LEVEL more than 4`, `touch LEVEL IS less than 4`
+  // `touch LEVEL more than 4`, `touch LEVEL IS less than 4`, `proximity IS NOT closer than 30cm`
   std::optional<Edit> more_than() {
     for (const std::size_t than : {stop_ + 1, stop_, stop_ - 1, before_ - 1}) {
       if (!is_name(than, "than") || than == 0) continue;
       const std::size_t first = than - 1;
-      const bool more = is_any_text(first, {"more", "greater", "larger", "higher", "bigger"});
-      const bool less = is_any_text(first, {"less", "fewer", "smaller", "lower"});
+      const bool more = is_any_text(
+          first, {"more", "greater", "larger", "higher", "bigger", "farther", "further", "louder",
+                  "brighter", "faster", "hotter", "warmer", "stronger", "harder", "heavier"});
+      const bool less = is_any_text(
+          first, {"less", "fewer", "smaller", "lower", "closer", "nearer", "quieter", "darker",
+                  "dimmer", "slower", "colder", "cooler", "weaker", "softer", "lighter"});
       if (!(more || less) || first == 0 || !asks_before(first)) return std::nullopt;
-      const std::size_t begin = is(first - 1, Kinds::IS) ? first - 1 : first;
-      const Span all = span(begin, first + 2);
-      const std::string sign = more ? ">" : "<";
-      report(Code::E0001, "`" + text(begin, first + 2) + "` is written `" + sign + "`", all)
-          .fix(all, sign, Applicability::likely);
-      return change(begin, first + 2 - begin, {{more ? Kinds::GREATER : Kinds::LESS, all}});
+      const bool negated = is(first - 1, Kinds::NOT) && is(first - 2, Kinds::IS);
+      const std::size_t begin = first - (negated ? 2 : is(first - 1, Kinds::IS) ? 1 : 0);
+      return compared(begin, than, more, negated);
     }
     return std::nullopt;
+  }
+  // From `begin` to `than`.
+  Edit compared(std::size_t begin, std::size_t than, bool more, bool negated) {
+    const Span all = span(begin, than + 1);
+    const std::string sign = negated ? more ? "<=" : ">=" : more ? ">" : "<";
+    const TokenKind kind = negated ? more ? Kinds::LESS_EQUAL : Kinds::GREATER_EQUAL
+                           : more  ? Kinds::GREATER
+                                   : Kinds::LESS;
+    Diagnostic& d =
+        report(Code::E0001, "`" + text(begin, than + 1) + "` is written `" + sign + "`", all)
+            .fix(all, sign, Applicability::likely);
+    std::size_t value = begin;
+    while (value > 0 && is(value - 1, Kinds::NAME))
+      --value;
+    if (value < begin && is(than + 1, Kinds::QUANTITY))
+      d.helps("write `" + text(value, begin) + " " + sign + " " + text(than + 1, than + 2) + "`");
+    return change(begin, than + 1 - begin, {{kind, all}});
   }
   bool is_any_text(std::size_t at, std::initializer_list<std::string_view> words) const {
     return std::any_of(words.begin(), words.end(),
