@@ -323,6 +323,10 @@ bool Examples::is_verb(std::string_view word) const {
   return robot_ != nullptr && !word.empty() && !robot_->command(word, "", false).empty();
 }
 
+bool Examples::is_actuator(std::string_view word) const {
+  return robot_ != nullptr && !word.empty() && !robot_->command("", word, false).empty();
+}
+
 bool Examples::is_sensor(std::string_view word) const {
   return robot_ != nullptr && !word.empty() &&
          !robot_->part(Vocabulary::Part::condition, word).empty();

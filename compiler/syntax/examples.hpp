@@ -45,6 +45,7 @@ public:
   // Of the robot; without a robot, of none.
   [[nodiscard]] bool is_verb(std::string_view word) const;
   [[nodiscard]] bool is_sensor(std::string_view word) const;
+  [[nodiscard]] bool is_actuator(std::string_view word) const;  // or a group of them
 
 private:
   OwnNames own_;

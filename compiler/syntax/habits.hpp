@@ -65,6 +65,10 @@ inline constexpr const char* kOwnLine = "write each command on its own line: the
                                                          const Attempt& failure,
                                                          const Examples& examples,
                                                          Diagnostics& diagnostics);
+// `RAISE left_arm`
+[[nodiscard]] std::optional<Edit> explain_raised(const Tokens& tokens, const SourceFile& source,
+                                                 const Attempt& failure, const Examples& examples,
+                                                 Diagnostics& diagnostics);
 // `WHEN I see a person`
 [[nodiscard]] std::optional<Edit> explain_sentence(const Tokens& tokens, const SourceFile& source,
                                                    const Attempt& failure, const Examples& examples,

@@ -556,7 +556,7 @@ private:
     return change(stop_ - 1, 1, {{Kinds::IS, sign}, {Kinds::NOT, sign}});
   }
 
-  // `SET x BY 3`, `RAISE x TO 3`, `RAISE x`
+  // `SET x BY 3`, `SET x`, `RAISE x TO 3`, `RAISE x 3`, `RAISE x`
   std::optional<Edit> changed_wrongly() {
     if (stop_ != statement_ + 2) return std::nullopt;
     const std::string name(text(statement_ + 1));
@@ -568,8 +568,21 @@ private:
                  name + " BY " + text(stop_ + 1, statement_end()) + "`");
       return change(stop_, 1, {{Kinds::TO, here}});
     }
+    const bool ends = stop_ == statement_end();
+    if (begins_with(Kinds::SET) && ends && is(stop_ - 1, Kinds::NAME)) {
+      report(Code::E0008, "this does not say what " + quote(statement_ + 1) + " becomes",
+             span(statement_, stop_))
+          .helps("write `SET " + name + " TO` and a value, such as `SET " + name + " TO 1`");
+      return change(stop_, 0, {missing(Kinds::TO, stop_), missing(Kinds::QUANTITY, stop_)});
+    }
     if (!begins_with(Kinds::RAISE) && !begins_with(Kinds::LOWER)) return std::nullopt;
     const std::string word(text(statement_));
+    if (is(stop_, Kinds::QUANTITY) && is(stop_ - 1, Kinds::NAME)) {
+      report(Code::E0008, "`BY` is missing after " + quote(statement_ + 1), here)
+          .helps("write `" + word + " " + name + " BY " + text(stop_, statement_end()) + "`")
+          .fix({here.file, here.begin, here.begin}, "BY ", Applicability::likely);
+      return change(stop_, 0, {missing(Kinds::BY, stop_)});
+    }
     if (is(stop_, Kinds::TO)) {
       report(Code::E0001, "`" + word + "` takes `BY` and an amount; to give a new value, use `SET`",
              here)
@@ -577,7 +590,7 @@ private:
                  "` or `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "`");
       return change(stop_, 1, {{Kinds::BY, here}});
     }
-    if (stop_ != statement_end()) return std::nullopt;
+    if (!ends) return std::nullopt;
     report(Code::E0008, "this does not say by how much " + quote(statement_ + 1) + " changes",
            span(statement_, stop_))
         .helps("write `" + word + " " + name + " BY 1`");

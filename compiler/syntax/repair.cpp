@@ -83,6 +83,7 @@ std::optional<Edit> known_mistake(const Tokens& tokens, const Attempt& failure,
                                   Diagnostics& diagnostics) {
   if (auto joined = explain_joined_command(tokens, source, failure, examples, diagnostics))
     return joined;
+  if (auto raised = explain_raised(tokens, source, failure, examples, diagnostics)) return raised;
   for (const auto explain_one : {explain_spoken_form, explain_wrong_form, explain_unit_apart,
                                  explain_misplaced_word, explain_foreign_habit, explain_habit})
     if (auto habit = explain_one(tokens, source, failure, diagnostics)) return habit;

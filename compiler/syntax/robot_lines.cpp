@@ -61,6 +61,37 @@ public:
     return change(comma, statement_end() - comma);
   }
 
+  // `RAISE left_arm`, `RAISE left_arm TO 40deg`: an actuator is moved, not raised.
+  std::optional<Edit> raised_actuator() {
+    const std::size_t name = statement_ + 1;
+    if (stop_ != statement_ + 2 || !(begins_with(Kinds::RAISE) || begins_with(Kinds::LOWER)) ||
+        !is(name, Kinds::NAME) || !examples_.is_actuator(text(name)))
+      return std::nullopt;
+    std::string better = examples_.command(text(name), true);
+    const std::size_t place = better.find(" TO ");
+    if (is(stop_, Kinds::TO) && place != std::string::npos)
+      better = better.substr(0, better.find(' ')) + " " + text(name, statement_end());
+    report(Code::E0508, quote(statement_) + " changes a number, and " + quote(name) + " is none",
+           span(statement_, name + 1))
+        .helps("an actuator takes commands, such as `" + better + "`");
+    return change(stop_, statement_end() - stop_,
+                  {missing(Kinds::BY, stop_), missing(Kinds::QUANTITY, stop_)});
+  }
+
+  // `RAISE`, `LOWER BY 3`
+  std::optional<Edit> raised_nothing() {
+    const bool raises = begins_with(Kinds::RAISE) || begins_with(Kinds::LOWER);
+    const bool ends = stop_ == statement_ + 1 && stop_ == statement_end();
+    const bool goes_on = is(statement_ + 1, Kinds::BY) || is(statement_ + 1, Kinds::TO);
+    if (!raises || stop_ > statement_ + 2 || !(ends || goes_on)) return std::nullopt;
+    report(Code::E0008, "a name is missing after " + quote(statement_), tokens_[statement_].span)
+        .helps(examples_.written_like(tokens_, stop_));
+    const std::size_t rest = statement_ + 1;
+    return change(
+        rest, statement_end() - rest,
+        {missing(Kinds::NAME, rest), missing(Kinds::BY, rest), missing(Kinds::QUANTITY, rest)});
+  }
+
 private:
   // Neither a command without its DO nor a misspelt word of RSL.
   bool is_plain_word(std::size_t at) const {
@@ -91,6 +122,15 @@ std::optional<Edit> explain_joined_command(const Tokens& tokens, const SourceFil
                                            const Attempt& failure, const Examples& examples,
                                            Diagnostics& diagnostics) {
   return RobotLines(tokens, source, failure, examples, diagnostics).joined_command();
+}
+
+std::optional<Edit> explain_raised(const Tokens& tokens, const SourceFile& source,
+                                   const Attempt& failure, const Examples& examples,
+                                   Diagnostics& diagnostics) {
+  RobotLines lines(tokens, source, failure, examples, diagnostics);
+  if (failure.stopped_at >= tokens.size()) return std::nullopt;
+  if (auto actuator = lines.raised_actuator()) return actuator;
+  return lines.raised_nothing();
 }
 
 std::optional<Edit> explain_sentence(const Tokens& tokens, const SourceFile& source,
