@@ -117,7 +117,8 @@ Result compile(Input program, Input configuration, const Options& options) {
     if (diagnostics.has_errors())
       diagnostics = without_clashes(without_warned(offer_modules(diagnostics)), result.sources);
     if (!diagnostics.has_errors())
-      result.tests = test_plan::plan_tests(parsed.trees(), *parsed.robot, diagnostics);
+      result.tests =
+          test_plan::plan_tests(parsed.trees(), *parsed.robot, result.sources, diagnostics);
   }
   apply_lints(diagnostics, result.sources, parsed.robot ? &*parsed.robot : nullptr, options.lints);
   if (parsed.complete && !diagnostics.has_errors()) {

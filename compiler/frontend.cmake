@@ -70,6 +70,7 @@ target_sources(robosync_compiler_small PRIVATE
   syntax/condition_behind.cpp
   syntax/edit.cpp
   syntax/examples.cpp
+  syntax/expect_within.cpp
   syntax/foreign_habits.cpp
   syntax/foreign_ranges.cpp
   syntax/foreign_text.cpp

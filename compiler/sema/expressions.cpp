@@ -556,11 +556,33 @@ std::optional<Typed> Expressions::constant_amount(const ast::Expr& expr, const W
   return std::nullopt;
 }
 
+namespace {
+
+// "10s TO 20s" for `10s - 20s`; empty if it is something else.
+std::string as_range(const ast::Expr& expr) {
+  const auto* const difference = std::get_if<ast::Arithmetic>(&expr.node);
+  if (difference == nullptr || difference->op != ast::ArithmeticOp::sub) return {};
+  const auto* const low = std::get_if<ast::Quantity>(&difference->left->node);
+  const auto* const high = std::get_if<ast::Quantity>(&difference->right->node);
+  if (low == nullptr || high == nullptr) return {};
+  std::string text(low->digits);
+  text += low->unit.empty() ? high->unit : low->unit;
+  return text.append(" TO ").append(high->digits).append(high->unit);
+}
+
+}  // namespace
+
 Typed Expressions::duration(const ast::Expr& expr, std::string_view what) {
   Typed result =
       amount(expr, {&canonical_unit(vm::Dimension::duration), std::string(what), expr.span});
   if (!result.is_number() || result.high > 0) return result;
-  diagnostics_.report(Code::E0509, std::string(what) + " must be above 0").label(expr.span);
+  Diagnostic& d =
+      diagnostics_.report(Code::E0509, std::string(what) + " must be above 0").label(expr.span);
+  if (const std::string range = as_range(expr); what == "EVERY" && !range.empty()) {
+    d.message += ", and `-` subtracts";
+    d.helps("for a random time in between, write `EVERY " + range + "`")
+        .fix(expr.span, range, Applicability::likely);
+  }
   return make_nothing(expr.span);
 }
 

@@ -33,21 +33,33 @@ public:
     if (auto edit = safety_without_when()) return edit;
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Habit = std::optional<Edit> (MisplacedWords::*)();
-    for (const Habit habit :
-         {&MisplacedWords::negated_comparison,  &MisplacedWords::negation,
-          &MisplacedWords::end_before_else,     &MisplacedWords::rule_in_rule,
-          &MisplacedWords::step_in_response,    &MisplacedWords::do_without_when,
-          &MisplacedWords::lonely_else,         &MisplacedWords::then_in_line,
-          &MisplacedWords::commands_with_and,   &MisplacedWords::commands_with_comma,
-          &MisplacedWords::second_statement,    &MisplacedWords::second_stopped,
-          &MisplacedWords::goes_on_above,       &MisplacedWords::times_of_name,
-          &MisplacedWords::counted_text,        &MisplacedWords::set_of_channel,
-          &MisplacedWords::rate_apart,          &MisplacedWords::foreign_rate,
-          &MisplacedWords::command_in_behavior, &MisplacedWords::within,
-          &MisplacedWords::columns_of_motion,   &MisplacedWords::word_with_sign,
-          &MisplacedWords::changed_wrongly,     &MisplacedWords::repeat_how_often,
-          &MisplacedWords::resume_after,        &MisplacedWords::modifier_behind_do,
-          &MisplacedWords::otherwise,           &MisplacedWords::more_than})
+    for (const Habit habit : {&MisplacedWords::negated_comparison,
+                              &MisplacedWords::negation,
+                              &MisplacedWords::end_before_else,
+                              &MisplacedWords::rule_in_rule,
+                              &MisplacedWords::step_in_response,
+                              &MisplacedWords::do_without_when,
+                              &MisplacedWords::lonely_else,
+                              &MisplacedWords::then_in_line,
+                              &MisplacedWords::commands_with_and,
+                              &MisplacedWords::commands_with_comma,
+                              &MisplacedWords::second_statement,
+                              &MisplacedWords::second_stopped,
+                              &MisplacedWords::goes_on_above,
+                              &MisplacedWords::times_of_name,
+                              &MisplacedWords::set_of_channel,
+                              &MisplacedWords::rate_apart,
+                              &MisplacedWords::foreign_rate,
+                              &MisplacedWords::command_in_behavior,
+                              &MisplacedWords::within,
+                              &MisplacedWords::columns_of_motion,
+                              &MisplacedWords::word_with_sign,
+                              &MisplacedWords::changed_wrongly,
+                              &MisplacedWords::repeat_how_often,
+                              &MisplacedWords::resume_after,
+                              &MisplacedWords::modifier_behind_do,
+                              &MisplacedWords::otherwise,
+                              &MisplacedWords::more_than})
       if (auto edit = (this->*habit)()) return edit;
     return std::nullopt;
   }
@@ -393,18 +405,6 @@ private:
         .helps("write `" + better + " TIMES`")
         .fix(name.span, better, Applicability::likely);
     return change(stop_ - 1, 1, {{Kinds::QUANTITY, name.span}});
-  }
-
-  // `EXPECT 5 TIMES LOG "x" WITHIN 10s`
-  std::optional<Edit> counted_text() {
-    if (!(is(stop_, Kinds::LOG) || is(stop_, Kinds::ALERT)) || !is(begin_, Kinds::EXPECT) ||
-        stop_ != begin_ + 3 || !is(stop_ - 1, Kinds::TIMES))
-      return std::nullopt;
-    report(Code::E0001, "a TEST counts commands, and " + quote(stop_) + " is not one",
-           span(stop_ - 2, stop_ + 1))
-        .helps("write `EXPECT " + text(stop_, end_) +
-               "`, or count with a REMEMBER and check it with `EXPECT THAT`");
-    return change(stop_ - 2, 2);
   }
 
   // `SET touch LEVEL TO 3`

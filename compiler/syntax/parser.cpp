@@ -12,6 +12,7 @@
 #include "compiler/syntax/articles.hpp"
 #include "compiler/syntax/builder.hpp"
 #include "compiler/syntax/examples.hpp"
+#include "compiler/syntax/expect_within.hpp"
 #include "compiler/syntax/foreign_text.hpp"
 #include "compiler/syntax/foreign_words.hpp"
 #include "compiler/syntax/heads.hpp"
@@ -131,6 +132,7 @@ public:
     tokens_ = lex_but_foreign_text(source_, file_, robot_, diagnostics_);
     leave_out_articles(tokens_, source_, robot_, diagnostics_);
     mend_number_words(tokens_, source_, robot_, diagnostics_);
+    mend_expectations(tokens_, source_, diagnostics_);
     find_strange_lines();
     mend_foreign_words(tokens_, source_, robot_, diagnostics_);
     mend_indented_blocks(tokens_, source_, diagnostics_);

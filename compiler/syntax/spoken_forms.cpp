@@ -13,14 +13,60 @@ public:
   std::optional<Edit> find() {
     if (stop_ >= tokens_.size()) return std::nullopt;
     using Form = std::optional<Edit> (SpokenForms::*)();
-    for (const Form form : {&SpokenForms::within_before_then, &SpokenForms::pick_without_option,
-                            &SpokenForms::repeat_as_spoken, &SpokenForms::every_time,
-                            &SpokenForms::band_as_condition})
+    for (const Form form :
+         {&SpokenForms::within_before_then, &SpokenForms::pick_without_option,
+          &SpokenForms::repeat_as_spoken, &SpokenForms::every_time, &SpokenForms::every_range,
+          &SpokenForms::counted_step, &SpokenForms::band_as_condition})
       if (auto edit = (this->*form)()) return edit;
     return std::nullopt;
   }
 
 private:
+  // `EVERY 10s AND 20s`, `EVERY BETWEEN 10s AND 20s`
+  std::optional<Edit> every_range() {
+    const std::size_t between = is(statement_ + 1, Kinds::BETWEEN) ? 1 : 0;
+    const std::size_t low = statement_ + 1 + between, word = low + 1;
+    if (!begins_with(Kinds::EVERY) || stop_ != (between == 1 ? statement_ + 1 : word) ||
+        !is(low, Kinds::QUANTITY) || !is(word + 1, Kinds::QUANTITY) ||
+        !(is(word, Kinds::AND) || is(word, Kinds::UNTIL) || is(word, Kinds::TO)))
+      return std::nullopt;
+    const std::string better = text(low, word) + " TO " + text(word + 1, word + 2);
+    const Span all = span(statement_ + 1, word + 2);
+    report(Code::E0001, "a random time between two is written with `TO`", all)
+        .helps("write `EVERY " + better + "`")
+        .fix(all, better, Applicability::likely);
+    return change(statement_ + 1, word + 1 - statement_,
+                  {tokens_[low], {Kinds::TO, tokens_[word].span}, tokens_[word + 1]});
+  }
+
+  // `EXPECT 5 TIMES LOG "x" WITHIN 10s`, `EXPECT LOG "x" 5 TIMES`, `EXPECT SAY "x" WITHIN 10s 5 TIMES`
+  std::optional<Edit> counted_step() {
+    if (!is(begin_, Kinds::EXPECT)) return std::nullopt;
+    const bool first = is(begin_ + 1, Kinds::QUANTITY) && is(begin_ + 2, Kinds::TIMES);
+    const std::size_t count = first ? begin_ + 1 : stop_, what = begin_ + (first ? 3 : 1);
+    if (!is(count, Kinds::QUANTITY) || !is(count + 1, Kinds::TIMES) || (first && stop_ != what))
+      return std::nullopt;
+    std::string step = text(what, first ? end_ : count);
+    if (!first && count + 2 < end_) step += " " + text(count + 2, end_);
+    const bool is_text = is(what, Kinds::LOG) || is(what, Kinds::ALERT);
+    if (is_text || is(what, Kinds::THAT)) {
+      report(
+          Code::E0001,
+          "a TEST counts commands, and " + (is_text ? quote(what) : "a condition") + " is not one",
+          span(count, first ? what + 1 : count + 2))
+          .helps("write `EXPECT " + step +
+                 "`, or count with a REMEMBER and check it with `EXPECT THAT`");
+      return change(count, 2);
+    }
+    if (first || !is(what, Kinds::NAME)) return std::nullopt;
+    const std::string better = "EXPECT " + text(count, count + 2) + " " + step;
+    report(Code::E0010, "in an `EXPECT`, `" + text(count, count + 2) + "` goes before the command",
+           span(count, count + 2))
+        .helps("write `" + better + "`")
+        .fix(span(begin_, end_), better, Applicability::likely);
+    return change(count, 2);
+  }
+
   // `touch LEVEL > 3 WITHIN 5s THEN touch LEVEL < 2`
   std::optional<Edit> within_before_then() {
     if (!is(stop_, Kinds::WITHIN) || !is(stop_ + 1, Kinds::QUANTITY) ||

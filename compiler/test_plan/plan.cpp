@@ -24,8 +24,9 @@ bool looks_back(const Expression& expression) {
 
 class Planner {
 public:
-  Planner(const Trees& trees, const Robot& robot)
+  Planner(const Trees& trees, const Robot& robot, const SourceMap& sources)
       : robot_(robot),
+        sources_(sources),
         names_(trees, robot, diagnostics_),
         expressions_(names_, diagnostics_),
         motions_(robot, names_, expressions_, ignored_),
@@ -205,8 +206,39 @@ private:
     });
   }
 
+  static bool is_count(const ast::Argument& argument) {
+    const auto* const amount = std::get_if<ast::Amount>(&argument.value);
+    return amount != nullptr && amount->times;
+  }
+
+  // `EXPECT SAY "Hello" 2 TIMES WITHIN 3s`: a verb that takes no TIMES is counted. True: this is reported.
+  bool report_count_behind(const ast::ExpectCommand& node, Span span) {
+    const ast::Command& command = node.command;
+    const auto count = std::ranges::find_if(command.arguments, is_count);
+    bool known = false, takes_times = false;
+    for (const ActuatorConfig& actuator : robot_.actuators)
+      if (const VerbConfig* const verb = actuator.find_verb(command.verb.text)) {
+        known = true;
+        takes_times = takes_times || verb->has(vm::Param::times);
+      }
+    if (count == command.arguments.end() || !known || takes_times || node.times) return false;
+    const std::string times(sources_.text(count->span));
+    std::string better = (node.no ? "NO" : times) + " " + std::string(command.verb.text);
+    for (const ast::Argument& argument : command.arguments)
+      if (&argument != &*count) better.append(" ").append(sources_.text(argument.span));
+    better.append(" WITHIN ").append(node.within ? sources_.text(node.within->span) : "2s");
+    diagnostics_
+        .report(Code::E0010, node.no ? "`EXPECT NO` takes no number of times"
+                                     : "in an `EXPECT`, `" + times + "` goes before the command")
+        .label(count->span)
+        .helps("write `EXPECT " + better + "`")
+        .fix(span, "EXPECT " + better, Applicability::likely);
+    return true;
+  }
+
   void add(const ast::ExpectCommand& node, Span span) {
     const bool stopped = ascii::same(node.command.verb.text, kStopped);
+    if (!stopped && report_count_behind(node, span)) return;
     if (node.within == nullptr && !stopped) {
       diagnostics_.report(Code::E0409, "this `EXPECT` does not say how long it waits")
           .label(span)
@@ -216,8 +248,10 @@ private:
     std::optional<std::uint32_t> times;
     if (node.times && !(times = whole(*node.times, 0))) return;
     const auto end = within(node.within);
-    if (stopped && times) {
-      diagnostics_.report(Code::E0409, "`STOPPED` cannot be counted").label(node.times->span);
+    const auto behind = std::ranges::find_if(node.command.arguments, is_count);
+    if (stopped && (times || behind != node.command.arguments.end())) {
+      diagnostics_.report(Code::E0409, "`STOPPED` cannot be counted")
+          .label(times ? node.times->span : behind->span);
       return;
     }
     if (stopped) {
@@ -330,6 +364,7 @@ private:
   }
 
   const Robot& robot_;
+  const SourceMap& sources_;
   Diagnostics diagnostics_;
   Names names_;
   Expressions expressions_;
@@ -343,13 +378,14 @@ private:
 
 }  // namespace
 
-TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnostics) {
+TestPlan plan_tests(const Trees& trees, const Robot& robot, const SourceMap& sources,
+                    Diagnostics& diagnostics) {
   TestPlan plan;
   const auto is_test = [](const ast::Item& item) {
     return std::holds_alternative<ast::Test>(item.node);
   };
   if (trees.empty() || std::ranges::none_of(trees.front()->items, is_test)) return plan;
-  Planner planner(trees, robot);
+  Planner planner(trees, robot, sources);
   for (const ast::Item& item : trees.front()->items) {
     if (const auto* test = std::get_if<ast::Test>(&item.node)) planner.plan(*test, item.span, plan);
   }

@@ -79,6 +79,7 @@ struct TestPlan {
 
 // The TEST blocks of the program itself, the first of `trees`, which must be free of errors. Tests with mistakes are reported and
 // left out.
-[[nodiscard]] TestPlan plan_tests(const Trees& trees, const Robot& robot, Diagnostics& diagnostics);
+[[nodiscard]] TestPlan plan_tests(const Trees& trees, const Robot& robot, const SourceMap& sources,
+                                  Diagnostics& diagnostics);
 
 }  // namespace robosync::compiler::test_plan
