@@ -162,8 +162,10 @@ constexpr std::array<std::string_view, 10> kWiringKeys = {
     "bus",  "address",         "pin",  "pins", "channel", "enable", "trigger",
     "echo", "pulses_per_turn", "wheel"};
 
-bool has(const auto& keys, std::string_view key) {
-  return std::ranges::find(keys, key) != std::ranges::end(keys);
+constexpr std::array<std::string_view, 1> kPin = {"pin"};
+
+bool has(std::span<const std::string_view> keys, std::string_view key) {
+  return std::ranges::find(keys, key) != keys.end();
 }
 
 }  // namespace
@@ -182,7 +184,7 @@ bool may_have(const Fields& fields, bool is_sensor, std::string_view key) {
   if (key == "register") return device->has_registers();
   if (key == "format") return device->sensor.driver == vm::DriverId::spi_register;
   if (key == "active")
-    return device->type == "GPIO" && keys_of_wiring(*device) == std::vector<std::string>{"pin"};
+    return device->type == "GPIO" && std::ranges::equal(keys_of_wiring(*device), kPin);
   return is_sensor || may_have(*device, key);
 }
 

@@ -43,7 +43,7 @@ struct ChipWiring {
 };
 
 // The keys that say how it is wired, such as "bus" and "address"; empty: it has none.
-[[nodiscard]] std::vector<std::string> keys_of_wiring(const Device& device);
+[[nodiscard]] std::span<const std::string_view> keys_of_wiring(const Device& device);
 // They and its addresses in words: "`bus` and `address`, `0x68 to 0x69`".
 [[nodiscard]] std::string wiring_of(const Device& device);
 

@@ -1,6 +1,9 @@
 // What a device and a board withstand and can do: addresses, voltages, and the wiring of what has no driver.
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -35,22 +38,30 @@ const json::Value* input_of(const Fields& fields) {
   return nullptr;
 }
 
+using Keys = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 3> kByEdges = {"pin", "pulses_per_turn", "wheel"};
+constexpr std::array<std::string_view, 4> kOfChannel = {"bus", "address", "channel", "enable"};
+constexpr std::array<std::string_view, 4> kOfWheels = {"left", "right", "speed", "track"};
+constexpr std::array<std::string_view, 2> kByEcho = {"trigger", "echo"};
+constexpr std::array<std::string_view, 2> kOfStrip = {"pin", "lights"};
+constexpr std::array<std::string_view, 2> kByPins = {"bus", "pin"};
+constexpr std::array<std::string_view, 1> kTwoPins = {"pins"};
+
 // The keys that a device needs instead of those of its type.
-std::vector<std::string> own_keys(vm::DriverId driver) {
-  if (vm::is_by_echo(driver)) return {"trigger", "echo"};
-  if (vm::counts_edges(driver)) return {"pin", "pulses_per_turn", "wheel"};
-  if (vm::drives_channel(driver)) return {"bus", "address", "channel", "enable"};
-  if (vm::drives_wheels(driver)) return {"left", "right", "speed", "track"};
-  if (vm::has_two_pins(driver)) return {"pins"};
-  if (vm::is_strip(driver)) return {"pin", "lights"};
-  return {};
+Keys own_keys(vm::DriverId driver) {
+  if (vm::is_by_echo(driver)) return kByEcho;
+  if (vm::counts_edges(driver)) return kByEdges;
+  if (vm::drives_channel(driver)) return kOfChannel;
+  if (vm::drives_wheels(driver)) return kOfWheels;
+  if (vm::has_two_pins(driver)) return kTwoPins;
+  return vm::is_strip(driver) ? Keys(kOfStrip) : Keys();
 }
 
-std::vector<std::string> keys_of(const WiringType& type) {
-  if (!type.bus) return {"pin"};
-  if (type.address) return {"bus", "address"};
-  if (type.pin) return {"bus", "pin"};
-  return {"bus"};
+Keys keys_of(const WiringType& type) {
+  if (!type.bus) return Keys(kByPins).last(1);
+  if (type.address) return Keys(kOfChannel).first(2);
+  return Keys(kByPins).first(type.pin ? 2 : 1);
 }
 
 bool is_part(vm::DriverId driver) {
@@ -59,16 +70,17 @@ bool is_part(vm::DriverId driver) {
 
 }  // namespace
 
-std::vector<std::string> keys_of_wiring(const Device& device) {
+std::span<const std::string_view> keys_of_wiring(const Device& device) {
   const vm::DriverId driver = device.is_sensor ? device.sensor.driver : device.actuator.driver;
   if (!device.has_driver || is_part(driver)) return {};
-  std::vector<std::string> keys = own_keys(driver);
+  const Keys keys = own_keys(driver);
   return keys.empty() ? keys_of(*std::ranges::find(wiring_types(), device.type, &WiringType::name))
                       : keys;
 }
 
 std::string wiring_of(const Device& device) {
-  std::string text = list_names(keys_of_wiring(device));
+  const Keys keys = keys_of_wiring(device);
+  std::string text = list_names({keys.begin(), keys.end()});
   if (!text.empty() && !device.addresses.empty()) text += ", " + list_names(listed(device), "or");
   return text;
 }

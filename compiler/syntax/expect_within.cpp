@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <span>
 #include <string>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "compiler/source/ascii.hpp"
 
@@ -39,11 +42,10 @@ void mend_expectations(Tokens& tokens, const SourceFile& source, Diagnostics& di
     const std::string_view begun =
         source.text().substr(line.front().span.begin, word->span.begin - line.front().span.begin);
     diagnostics
-        .report(Code::E0001, "a TEST says how long it waits with `" + better + "`, not with `" +
-                                 std::string(source.text(word->span)) + "`")
+        .report(Code::E0001, fmt::format("a TEST says how long it waits with `{}`, not with `{}`",
+                                         better, source.text(word->span)))
         .label(word->span)
-        .helps("write `" + std::string(begun) + better + " " +
-               std::string(source.text(line.back().span)) + "`")
+        .helps(fmt::format("write `{}{} {}`", begun, better, source.text(line.back().span)))
         .fix(word->span, better, Applicability::likely);
     word->kind = silence ? Kinds::FOR : Kinds::WITHIN;
   }

@@ -4,6 +4,7 @@
 #include "compiler/syntax/habits.hpp"
 #include "compiler/syntax/keyword_roles.hpp"
 #include "compiler/syntax/mistaken_line.hpp"
+#include "compiler/syntax/word_list.hpp"
 #include "compiler/units/units.hpp"
 
 namespace robosync::compiler {
@@ -558,43 +559,38 @@ private:
 
   // `SET x BY 3`, `SET x`, `RAISE x TO 3`, `RAISE x 3`, `RAISE x`
   std::optional<Edit> changed_wrongly() {
-    if (stop_ != statement_ + 2) return std::nullopt;
-    const std::string name(text(statement_ + 1));
-    const Span here = tokens_[stop_].span;
-    if (begins_with(Kinds::SET) && is(stop_, Kinds::BY)) {
-      report(Code::E0001, "`SET` takes `TO` and a new value; `BY` goes with `RAISE` or `LOWER`",
-             here)
-          .helps("write `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "` or `RAISE " +
-                 name + " BY " + text(stop_ + 1, statement_end()) + "`");
+    const bool raises = begins_with(Kinds::RAISE) || begins_with(Kinds::LOWER);
+    if (stop_ != statement_ + 2 || !(raises || begins_with(Kinds::SET))) return std::nullopt;
+    const std::string word(text(statement_)), name(text(statement_ + 1));
+    const std::string rest = text(stop_ + 1, statement_end());
+    const Span here = tokens_[stop_].span, all = span(statement_, stop_);
+    const bool ends = stop_ == statement_end();
+    if (!raises && is(stop_, Kinds::BY)) {
+      say(Code::E0001, here, "`SET` takes `TO` and a new value; `BY` goes with `RAISE` or `LOWER`",
+          "write `{0} {1} TO {2}` or `RAISE {1} BY {2}`", word, name, rest);
       return change(stop_, 1, {{Kinds::TO, here}});
     }
-    const bool ends = stop_ == statement_end();
-    if (begins_with(Kinds::SET) && ends && is(stop_ - 1, Kinds::NAME)) {
-      report(Code::E0008, "this does not say what " + quote(statement_ + 1) + " becomes",
-             span(statement_, stop_))
-          .helps("write `SET " + name + " TO` and a value, such as `SET " + name + " TO 1`");
-      return change(stop_, 0, {missing(Kinds::TO, stop_), missing(Kinds::QUANTITY, stop_)});
+    if (raises && is(stop_, Kinds::TO)) {
+      say(Code::E0001, here, "`{0}` takes `BY` and an amount; to give a new value, use `SET`",
+          "write `{0} {1} BY {2}` or `SET {1} TO {2}`", word, name, rest);
+      return change(stop_, 1, {{Kinds::BY, here}});
     }
-    if (!begins_with(Kinds::RAISE) && !begins_with(Kinds::LOWER)) return std::nullopt;
-    const std::string word(text(statement_));
-    if (is(stop_, Kinds::QUANTITY) && is(stop_ - 1, Kinds::NAME)) {
-      report(Code::E0008, "`BY` is missing after " + quote(statement_ + 1), here)
-          .helps("write `" + word + " " + name + " BY " + text(stop_, statement_end()) + "`")
+    if (!is(stop_ - 1, Kinds::NAME)) return std::nullopt;
+    if (raises && is(stop_, Kinds::QUANTITY)) {
+      say(Code::E0008, here, "`BY` is missing after `{1}`", "write `{0} {1} BY {2}`", word, name,
+          text(stop_, statement_end()))
           .fix({here.file, here.begin, here.begin}, "BY ", Applicability::likely);
       return change(stop_, 0, {missing(Kinds::BY, stop_)});
     }
-    if (is(stop_, Kinds::TO)) {
-      report(Code::E0001, "`" + word + "` takes `BY` and an amount; to give a new value, use `SET`",
-             here)
-          .helps("write `" + word + " " + name + " BY " + text(stop_ + 1, statement_end()) +
-                 "` or `SET " + name + " TO " + text(stop_ + 1, statement_end()) + "`");
-      return change(stop_, 1, {{Kinds::BY, here}});
-    }
     if (!ends) return std::nullopt;
-    report(Code::E0008, "this does not say by how much " + quote(statement_ + 1) + " changes",
-           span(statement_, stop_))
-        .helps("write `" + word + " " + name + " BY 1`");
-    return change(stop_, 0, {missing(Kinds::BY, stop_), missing(Kinds::QUANTITY, stop_)});
+    say(Code::E0008, all,
+        raises ? "this does not say by how much `{1}` changes"
+               : "this does not say what `{1}` becomes",
+        raises ? "write `{0} {1} BY 1`" : "write `{0} {1} TO` and a value, such as `{0} {1} TO 1`",
+        word, name, rest);
+    return change(
+        stop_, 0,
+        {missing(raises ? Kinds::BY : Kinds::TO, stop_), missing(Kinds::QUANTITY, stop_)});
   }
 
   // `REPEAT`
@@ -650,12 +646,15 @@ private:
     for (const std::size_t than : {stop_ + 1, stop_, stop_ - 1, before_ - 1}) {
       if (!is_name(than, "than") || than == 0) continue;
       const std::size_t first = than - 1;
-      const bool more = is_any_text(
-          first, {"more", "greater", "larger", "higher", "bigger", "farther", "further", "louder",
-                  "brighter", "faster", "hotter", "warmer", "stronger", "harder", "heavier"});
-      const bool less = is_any_text(
-          first, {"less", "fewer", "smaller", "lower", "closer", "nearer", "quieter", "darker",
-                  "dimmer", "slower", "colder", "cooler", "weaker", "softer", "lighter"});
+      const bool more = has_word(
+          "more greater larger higher bigger farther further louder brighter faster hotter warmer "
+          "stronger harder heavier",
+          text(first));
+      const bool less = has_word(
+          "less fewer smaller lower closer nearer quieter darker dimmer slower colder cooler "
+          "weaker "
+          "softer lighter",
+          text(first));
       if (!(more || less) || first == 0 || !asks_before(first)) return std::nullopt;
       const bool negated = is(first - 1, Kinds::NOT) && is(first - 2, Kinds::IS);
       const std::size_t begin = first - (negated ? 2 : is(first - 1, Kinds::IS) ? 1 : 0);
@@ -677,12 +676,8 @@ private:
     while (value > 0 && is(value - 1, Kinds::NAME))
       --value;
     if (value < begin && is(than + 1, Kinds::QUANTITY))
-      d.helps("write `" + text(value, begin) + " " + sign + " " + text(than + 1, than + 2) + "`");
+      d.helps(fmt::format("write `{} {} {}`", text(value, begin), sign, text(than + 1)));
     return change(begin, than + 1 - begin, {{kind, all}});
-  }
-  bool is_any_text(std::size_t at, std::initializer_list<std::string_view> words) const {
-    return std::any_of(words.begin(), words.end(),
-                       [&](std::string_view word) { return ascii::same(text(at), word); });
   }
 };
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "compiler/diagnostics/diagnostic.hpp"
 #include "compiler/source/ascii.hpp"
 #include "compiler/source/source_file.hpp"
@@ -199,6 +201,17 @@ protected:
     Diagnostic& diagnostic = diagnostics_.report(code, std::move(message));
     diagnostic.label(place);
     return diagnostic;
+  }
+
+  // Both texts have the words in the places of `{0}`, `{1}`, …
+  template <typename... Words>
+  Diagnostic& say(Code code, Span place, std::string_view text, std::string_view help,
+                  const Words&... words) {
+    return say_with(code, place, text, help, fmt::make_format_args(words...));
+  }
+  Diagnostic& say_with(Code code, Span place, std::string_view text, std::string_view help,
+                       fmt::format_args words) {
+    return report(code, fmt::vformat(text, words), place).helps(fmt::vformat(help, words));
   }
 
   const Tokens& tokens_;

@@ -71,9 +71,8 @@ public:
     const std::size_t place = better.find(" TO ");
     if (is(stop_, Kinds::TO) && place != std::string::npos)
       better = better.substr(0, better.find(' ')) + " " + text(name, statement_end());
-    report(Code::E0508, quote(statement_) + " changes a number, and " + quote(name) + " is none",
-           span(statement_, name + 1))
-        .helps("an actuator takes commands, such as `" + better + "`");
+    say(Code::E0508, span(statement_, name + 1), "`{0}` changes a number, and `{1}` is none",
+        "an actuator takes commands, such as `{2}`", text(statement_), text(name), better);
     return change(stop_, statement_end() - stop_,
                   {missing(Kinds::BY, stop_), missing(Kinds::QUANTITY, stop_)});
   }

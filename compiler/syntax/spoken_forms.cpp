@@ -32,8 +32,8 @@ private:
       return std::nullopt;
     const std::string better = text(low, word) + " TO " + text(word + 1, word + 2);
     const Span all = span(statement_ + 1, word + 2);
-    report(Code::E0001, "a random time between two is written with `TO`", all)
-        .helps("write `EVERY " + better + "`")
+    say(Code::E0001, all, "a random time between two is written with `TO`", "write `EVERY {0}`",
+        better)
         .fix(all, better, Applicability::likely);
     return change(statement_ + 1, word + 1 - statement_,
                   {tokens_[low], {Kinds::TO, tokens_[word].span}, tokens_[word + 1]});
@@ -50,19 +50,17 @@ private:
     if (!first && count + 2 < end_) step += " " + text(count + 2, end_);
     const bool is_text = is(what, Kinds::LOG) || is(what, Kinds::ALERT);
     if (is_text || is(what, Kinds::THAT)) {
-      report(
-          Code::E0001,
-          "a TEST counts commands, and " + (is_text ? quote(what) : "a condition") + " is not one",
-          span(count, first ? what + 1 : count + 2))
-          .helps("write `EXPECT " + step +
-                 "`, or count with a REMEMBER and check it with `EXPECT THAT`");
+      say(Code::E0001, span(count, first ? what + 1 : count + 2),
+          "a TEST counts commands, and {1} is not one",
+          "write `EXPECT {0}`, or count with a REMEMBER and check it with `EXPECT THAT`", step,
+          is_text ? quote(what) : "a condition");
       return change(count, 2);
     }
     if (first || !is(what, Kinds::NAME)) return std::nullopt;
-    const std::string better = "EXPECT " + text(count, count + 2) + " " + step;
-    report(Code::E0010, "in an `EXPECT`, `" + text(count, count + 2) + "` goes before the command",
-           span(count, count + 2))
-        .helps("write `" + better + "`")
+    const std::string times = text(count, count + 2);
+    const std::string better = fmt::format("EXPECT {} {}", times, step);
+    say(Code::E0010, span(count, count + 2), "in an `EXPECT`, `{0}` goes before the command",
+        "write `{1}`", times, better)
         .fix(span(begin_, end_), better, Applicability::likely);
     return change(count, 2);
   }

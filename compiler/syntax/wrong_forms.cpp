@@ -63,14 +63,6 @@ public:
   }
 
 private:
-  // Both texts have the words in the places of `{0}`, `{1}`, …
-  template <typename... Words>
-  Diagnostic& say(Code code, Span place, std::string_view text, std::string_view help,
-                  const Words&... words) {
-    return report(code, fmt::format(fmt::runtime(text), words...), place)
-        .helps(fmt::format(fmt::runtime(help), words...));
-  }
-
   // These tokens, which the text lacks, instead of `removed` ones.
   Edit instead(std::size_t at, std::size_t removed, Kindlist kinds) const {
     Tokens inserted;
