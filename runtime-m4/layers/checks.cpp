@@ -2,6 +2,7 @@
 #include "runtime-m4/layers/checks.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime-m4/layers/clock.hpp"
 #include "runtime-m4/policy/rules.hpp"
@@ -21,10 +22,15 @@ void Checks::start(const vm::Image& image, Memory& memory) {
   }
 }
 
-bool Checks::update(unsigned check, std::uint32_t now, std::span<vm::Value> values) {
+bool Checks::update(unsigned check, std::uint32_t now, vm::Value* values) {
   const vm::Check& wiring = wiring_[check];
   vm::Value value = values[wiring.input];
-  if (wiring.window > 1) value = smoothed(windows_[check], wiring, now, value);
+  if (value == vm::kUnknown) [[unlikely]] {
+    if (wiring.window > 1) windows_[check].forget();
+    return std::exchange(values[channels_ + wiring.variable], value) != value;
+  }
+  if (wiring.window > 1) [[likely]]
+    value = smoothed(windows_[check], wiring, now, value);
   vm::Value& band = values[channels_ + wiring.variable];
   const vm::Value before = band;
   band = band_of(wiring, value, before);
@@ -43,48 +49,58 @@ std::uint32_t Checks::next(std::uint32_t now) const {
 
 // --- the window ---
 
+MedianWindow Checks::samples_of(Window& window, const vm::Check& wiring) {
+  return {{&samples_[window.first], wiring.window},
+          {&orders_[window.first], wiring.window},
+          window.samples};
+}
+
+// The value is known. In the common cases, at most one sample is due: of a new reading in each period, or of the held value.
 vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_t now,
                            vm::Value value) {
-  if (value == vm::kUnknown) {
-    window.held = window.median = value;
-    window.samples = {};
-    return value;
-  }
-  const unsigned size = wiring.window;
-  MedianWindow samples({&samples_[window.first], size}, {&orders_[window.first], size},
-                       window.samples);
   const std::uint32_t period_ms = policy::sample_period_ms(wiring);
   const std::uint32_t since = now - window.newest;
-  // The common case first: a new reading in each period.
-  if (window.samples.count == 0 || (since == period_ms && value != window.held)) {
-    window.newest = now;
-    samples.push(value);
-  } else if (since == 0) {
-    samples.replace_newest(value);
-  } else if (const std::uint32_t over = (since - 1) / period_ms; over > 0) {
-    for (std::uint32_t i = std::min<std::uint32_t>(over, size); i > 0; --i)
-      samples.push(window.held);
-    window.newest += over * period_ms;
-    if (now - window.newest == period_ms && value != window.held) {
-      window.newest = now;
-      samples.push(value);
+  vm::Value sample = value;
+  std::uint32_t at = now;
+  if ((since != period_ms || value == window.held) && window.samples.count != 0) {
+    if (since >= 2 * period_ms) return catch_up(window, wiring, now, value);
+    if (since <= period_ms) {
+      window.held = value;
+      if (since == 0) window.median = samples_of(window, wiring).replace_newest(value);
+      return window.median;
     }
-  } else {
-    window.held = value;
-    return window.median;
+    sample = window.held;
+    at = window.newest + period_ms;
   }
   window.held = value;
-  window.median = samples.median();
+  window.newest = at;
+  return window.median = samples_of(window, wiring).push(sample);
+}
+
+// … when two periods or more have passed since the newest sample. Not cloned: a clone's arguments would be prepared above.
+[[gnu::noinline, gnu::noclone]] vm::Value Checks::catch_up(Window& window, const vm::Check& wiring,
+                                                           std::uint32_t now, vm::Value value) {
+  const std::uint32_t period_ms = policy::sample_period_ms(wiring);
+  const std::uint32_t over = (now - window.newest - 1) / period_ms;
+  MedianWindow samples = samples_of(window, wiring);
+  for (std::uint32_t i = std::min<std::uint32_t>(over, wiring.window); i > 0; --i)
+    window.median = samples.push(window.held);
+  window.newest += over * period_ms;
+  if (now - window.newest == period_ms && value != window.held) {
+    window.newest = now;
+    window.median = samples.push(value);
+  }
+  window.held = value;
   return window.median;
 }
 
 // --- the bands ---
 
+// The value is known.
 vm::Value Checks::band_of(const vm::Check& check, vm::Value value, vm::Value before) const {
-  if (value == vm::kUnknown) return vm::kUnknown;
   const std::span bands = bands_.subspan(check.first_band, check.band_count);
   if (before != vm::kUnknown) {
-    const vm::Band& last = bands[static_cast<std::size_t>(before / vm::kScale)];
+    const vm::Band& last = bands[static_cast<std::size_t>(before) / vm::kScale];
     if (value >= last.stay_low && value <= last.stay_high) return before;
   }
   for (std::size_t b = 0; b < bands.size(); ++b)

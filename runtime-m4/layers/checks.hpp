@@ -28,7 +28,9 @@ public:
 
   // Puts the band of `check` at `now` (milliseconds of program time) into `values`, the values of
   // all inputs. Returns whether it changed. Several calls at one time make one sample.
-  bool update(unsigned check, std::uint32_t now, std::span<vm::Value> values);
+  bool update(unsigned check, std::uint32_t now, std::span<vm::Value> values) {
+    return update(check, now, values.data());
+  }
   // In how many milliseconds a band may change although no input does; kNever for never.
   std::uint32_t next(std::uint32_t now) const;
 
@@ -39,9 +41,17 @@ private:
     std::uint32_t newest = 0;         // when the newest one was taken
     MedianWindow::State samples;
     std::uint16_t first = 0;  // index of its first sample in samples_
+
+    void forget() {
+      held = median = vm::kUnknown;
+      samples = {};
+    }
   };
 
+  bool update(unsigned check, std::uint32_t now, vm::Value* values);
   vm::Value smoothed(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
+  vm::Value catch_up(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
+  MedianWindow samples_of(Window& window, const vm::Check& wiring);
   vm::Value band_of(const vm::Check& check, vm::Value value, vm::Value before) const;
 
   std::span<const vm::Check> wiring_;

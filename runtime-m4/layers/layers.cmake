@@ -90,14 +90,13 @@ if(CMAKE_CROSSCOMPILING)
   set_source_files_properties(drivers/axes.cpp drivers/lsm303agr.cpp drivers/axes_chip.cpp PROPERTIES COMPILE_OPTIONS -O2)
   set_source_files_properties(drivers/spectrum.cpp PROPERTIES COMPILE_OPTIONS "-O2;-fno-lto")
 endif()
-set_source_files_properties(layers/median.cpp PROPERTIES
-  COMPILE_OPTIONS "-O2;$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>")
+set_source_files_properties(layers/median.cpp PROPERTIES COMPILE_OPTIONS -O2)
 # Every reading passes through this, in the step thread. There is only one such thread: its stack has room for it.
 set_source_files_properties(layers/processing.cpp layers/thresholds.cpp PROPERTIES COMPILE_OPTIONS "-O2")
 # … and what comes of it through these.
 if(CMAKE_CROSSCOMPILING)
-  set_source_files_properties(layers/mailbox.cpp layers/command_pool.cpp layers/behavior.cpp layers/triggers.cpp
-    layers/arbiter.cpp layers/variables.cpp PROPERTIES COMPILE_OPTIONS "-O2")
+  set_source_files_properties(layers/checks.cpp layers/mailbox.cpp layers/command_pool.cpp layers/behavior.cpp
+    layers/triggers.cpp layers/arbiter.cpp layers/variables.cpp PROPERTIES COMPILE_OPTIONS "-O2")
 endif()
 # The path from a reading in its mailbox to the pins in their safe state.
 set_source_files_properties(safety/safety_rules.cpp PROPERTIES COMPILE_OPTIONS "-O2")

@@ -1,4 +1,4 @@
-// See median.hpp. Built for speed, without turning its loops into calls of memmove (layers.cmake).
+// See median.hpp. Built for speed: each sample of SMOOTH passes through this. So it has no loops, either.
 #include "runtime-m4/layers/median.hpp"
 
 #include <bit>
@@ -7,84 +7,157 @@
 namespace robosync::layers {
 namespace {
 
-static_assert(vm::kMaxWindow == 32, "first_behind() halves so many");
+static_assert(vm::kMaxWindow == 32, "Order halves so many places, and move_by() moves one less");
 
-// Moves four bytes at once, whatever the addresses.
-void move_four(std::uint8_t* to, const std::uint8_t* from) {
+// The places of the samples, sorted. There is at least one. All but the last are searched.
+class Order {
+public:
+  Order(vm::Value* ring, std::uint8_t* places, unsigned count)
+      : ring_(ring),
+        first_(places),
+        count_(count),
+        rest_(count - 1),
+        half_(kHighest >> std::countl_zero(rest_ | 1)) {}
+
+  // The first place whose sample is above `value`, or else the last place. A binary search in a fixed number of steps: the
+  // samples in front of `at` are not above.
+  [[gnu::always_inline]] std::uint8_t* behind(vm::Value value) const {
+    std::uint8_t* at = first_;
+    if (!is_above(first_ + (half_ - 1), value)) at += count_ - half_;
+    const auto look = [&](unsigned step) {
+      if (!is_above(at + (step - 1), value)) at += step;
+    };
+    if (half_ > 8) [[likely]]
+      look(8);
+    if (half_ > 4) look(4);
+    if (half_ > 2) look(2);
+    if (half_ > 1) look(1);
+    return at;
+  }
+  bool is_above(const std::uint8_t* place, vm::Value value) const { return ring_[*place] > value; }
+  std::uint8_t* last() const { return first_ + rest_; }
+  vm::Value write(unsigned place, vm::Value value) const {
+    ring_[place] = value;
+    return ring_[first_[rest_ / 2]];
+  }
+
+private:
+  static constexpr std::uint32_t kHighest = std::uint32_t{1} << 31;
+
+  vm::Value* ring_;
+  std::uint8_t* first_;
+  unsigned count_;
+  unsigned rest_;  // how many are searched
+  unsigned half_;  // the highest bit of that
+};
+
+std::uint32_t read_four(const std::uint8_t* from) {
   std::uint32_t four = 0;
   std::memcpy(&four, from, sizeof four);
+  return four;
+}
+
+void write_four(std::uint8_t* to, std::uint32_t four) {
   std::memcpy(to, &four, sizeof four);
 }
 
-// The first of `count` places whose sample is not below `value` and, with kEquals, not equal to it
-// either. A binary search without branches that depend on the samples: before() holds for all places in front of `at`.
-template <bool kEquals>
-[[gnu::noinline]] std::uint8_t* first_behind(const vm::Value* ring, std::uint8_t* order,
-                                             unsigned count, vm::Value value) {
-  const auto before = [&](unsigned place) {
-    return kEquals ? ring[place] <= value : ring[place] < value;
-  };
-  const unsigned half = std::bit_floor(count);
-  std::uint8_t* at = before(order[half - 1]) ? order + (count - half) + 1 : order;
-  const auto look = [&](unsigned step) {
-    if (before(at[step - 1])) at += step;
-  };
-  if (half > 16) look(16);
-  if (half > 8) look(8);
-  if (half > 4) look(4);
-  if (half > 2) look(2);
-  if (half > 1) look(1);
-  return at;
+// Moves one place by one: kBy is 1 or -1. `nth` counts from the end that moves last.
+template <int kBy>
+void move_one(std::uint8_t* first, std::uint8_t* end, std::size_t nth) {
+  std::uint8_t* const from = kBy > 0 ? first + (nth - 1) : end - nth;
+  from[kBy] = *from;
 }
 
-// Moves the places behind `from`, up to `to`, down by one.
-std::uint8_t* move_down(std::uint8_t* from, const std::uint8_t* to) {
-  for (; to - from >= 8; from += 8) {
-    move_four(from, from + 1);
-    move_four(from + 4, from + 5);
-  }
-  if (to - from >= 4) {
-    move_four(from, from + 1);
-    from += 4;
-  }
-  for (; from < to; ++from)
-    *from = from[1];
-  return from;
+// … a word of four places; `nth` counts words.
+template <int kBy>
+void move_four(std::uint8_t* first, std::uint8_t* end, std::size_t nth) {
+  std::uint8_t* const from = kBy > 0 ? first + 4 * (nth - 1) : end - 4 * nth;
+  write_four(from + kBy, read_four(from));
 }
 
-// Moves the places in front of `from`, back to `to`, up by one.
-std::uint8_t* move_up(std::uint8_t* from, const std::uint8_t* to) {
-  for (; from - to >= 8; from -= 8) {
-    move_four(from - 3, from - 4);
-    move_four(from - 7, from - 8);
+// … so many words, 1 to 7.
+template <int kBy>
+[[gnu::always_inline]] inline void move_fours(std::uint8_t* first, std::uint8_t* end,
+                                              unsigned words) {
+  switch (words) {
+    case 7:
+      move_four<kBy>(first, end, 7);
+      [[fallthrough]];
+    case 6:
+      move_four<kBy>(first, end, 6);
+      [[fallthrough]];
+    case 5:
+      move_four<kBy>(first, end, 5);
+      [[fallthrough]];
+    case 4:
+      move_four<kBy>(first, end, 4);
+      [[fallthrough]];
+    case 3:
+      move_four<kBy>(first, end, 3);
+      [[fallthrough]];
+    case 2:
+      move_four<kBy>(first, end, 2);
+      [[fallthrough]];
+    default:
+      move_four<kBy>(first, end, 1);
   }
-  if (from - to >= 4) {
-    move_four(from - 3, from - 4);
-    from -= 4;
+}
+
+// … all places, 31 at most. The four at the end that moves first are read before and written after the others, which may overlap
+// them.
+template <int kBy>
+[[gnu::always_inline]] inline void move_by(std::uint8_t* first, std::uint8_t* end) {
+  const auto count = static_cast<unsigned>(end - first);
+  if (count < 4) {
+    if (count > 2) move_one<kBy>(first, end, 3);
+    if (count > 1) move_one<kBy>(first, end, 2);
+    if (count > 0) move_one<kBy>(first, end, 1);
+    return;
   }
-  for (; from > to; --from)
-    *from = from[-1];
-  return from;
+  std::uint8_t* const rest = kBy > 0 ? end - 4 : first;
+  const std::uint32_t four = read_four(rest);
+  move_fours<kBy>(first, end, count / 4);
+  write_four(rest + kBy, four);
+}
+
+// Gives `place`, which is at `from`, the new value, and moves it to behind all samples that are not above. Returns the median.
+[[gnu::always_inline]] inline vm::Value put(const Order& order, std::uint8_t* from, unsigned place,
+                                            vm::Value value) {
+  std::uint8_t* to = order.behind(value);
+  if (to > from) [[likely]] {
+    if (to != order.last() || order.is_above(to, value)) --to;
+    move_by<-1>(from + 1, to + 1);
+  } else {
+    move_by<1>(to, from);
+  }
+  *to = static_cast<std::uint8_t>(place);
+  return order.write(place, value);
 }
 
 }  // namespace
 
-// Replaces the newest sample, which is the last of its equals, or, in a full window, the oldest, which
-// is the first of its equals. Until the window is full, nothing else goes. The new sample is placed behind its equals.
-void MedianWindow::take(vm::Value value, bool in_place_of_newest) {
-  const unsigned count = state_.count;
-  const unsigned place = state_.newest;
-  std::uint8_t* from = order_ + count;
-  if (in_place_of_newest) {
-    from = first_behind<true>(ring_, order_, count, ring_[place]) - 1;
-  } else if (count == size_) {
-    from = first_behind<false>(ring_, order_, count, ring_[place]);
-  } else {
-    state_.count = static_cast<std::uint8_t>(count + 1);
+vm::Value MedianWindow::push(vm::Value* ring, std::uint8_t* order, State& state, unsigned size,
+                             vm::Value value) {
+  const unsigned place = (state.newest == 0 ? size : state.newest) - 1;  // the ring runs backwards
+  state.newest = static_cast<std::uint8_t>(place);
+  const bool full = state.count == size;
+  if (!full) [[unlikely]] {
+    order[state.count] = state.newest;  // of a first sample, its place is read
+    ++state.count;
   }
-  std::uint8_t* const to = count == 0 ? from : first_behind<true>(ring_, order_, count, value);
-  *(to > from ? move_down(from, to - 1) : move_up(from, to)) = static_cast<std::uint8_t>(place);
-  ring_[place] = value;
+  const Order sorted(ring, order, state.count);
+  // The oldest sample is the first of its equals.
+  return put(sorted, full ? sorted.behind(ring[place] - 1) : sorted.last(), place, value);
+}
+
+vm::Value MedianWindow::replace_newest(vm::Value* ring, std::uint8_t* order, State& state,
+                                       vm::Value value) {
+  const unsigned place = state.newest;
+  const Order sorted(ring, order, state.count);
+  // It is the last of its equals, and the last place is not searched.
+  std::uint8_t* from = sorted.behind(ring[place]);
+  if (*from != place) --from;
+  return put(sorted, from, place, value);
 }
 
 }  // namespace robosync::layers

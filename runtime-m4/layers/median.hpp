@@ -17,7 +17,7 @@ public:
   // The state besides the samples. A new one is an empty window.
   struct State {
     std::uint8_t count = 0;
-    std::uint8_t newest = 0;  // index in the ring
+    std::uint8_t newest = 0;  // index in the ring, which runs backwards
   };
 
   // Both have one element per sample, 1 to vm::kMaxWindow.
@@ -27,18 +27,18 @@ public:
         size_(static_cast<unsigned>(ring.size())),
         state_(state) {}
 
+  // Both return the new median: with an even number of samples, the lower of the middle two.
   // Drops the oldest sample once the window is full.
-  void push(vm::Value value) {
-    const unsigned next = state_.newest + 1U;
-    state_.newest = static_cast<std::uint8_t>(next < size_ ? next : 0);
-    take(value, false);
-  }
-  void replace_newest(vm::Value value) { take(value, true); }
-  // With an even number of samples, the lower of the middle two. Not for an empty window.
-  vm::Value median() const { return ring_[order_[(state_.count - 1U) / 2]]; }
+  vm::Value push(vm::Value value) { return push(ring_, order_, state_, size_, value); }
+  // Not for an empty window.
+  vm::Value replace_newest(vm::Value value) { return replace_newest(ring_, order_, state_, value); }
 
 private:
-  void take(vm::Value value, bool in_place_of_newest);
+  // Their arguments are in registers, which costs less than an object in memory, and the caller keeps registers of its own.
+  [[gnu::noinline]] static vm::Value push(vm::Value* ring, std::uint8_t* order, State& state,
+                                          unsigned size, vm::Value value);
+  [[gnu::noinline]] static vm::Value replace_newest(vm::Value* ring, std::uint8_t* order,
+                                                    State& state, vm::Value value);
 
   vm::Value* ring_;
   // Indices into the ring, sorted by value; of equal values the older one first.
