@@ -128,8 +128,12 @@ void SafetyRules::trip(const vm::Rule& rule) {
   vm::Output said{};
   while (reader.next(said))
     act(said, halted_by(rule));
+  if (work_->machine.written() != 0) stage_writes();
+}
+
+// Not inlined: on the way to the actuators it would be on the stack.
+[[gnu::noinline]] void SafetyRules::stage_writes() {
   const vm::Machine& machine = work_->machine;
-  if (machine.written() == 0) return;
   layers_.variables.stage_first(
       {.frame = frame_, .assigned = machine.assigned, .shifted = machine.shifted},
       program_->image.behaviors[vm::kSafetyBehavior], snapshot());

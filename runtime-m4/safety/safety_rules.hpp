@@ -73,6 +73,7 @@ private:
   // Rare paths are out of line, so that they take no registers from the frequent one.
   [[gnu::cold, gnu::noinline]] void note_zero_divide(const vm::Rule& rule);
   [[gnu::cold, gnu::noinline]] void trip(const vm::Rule& rule);
+  void stage_writes();
   [[gnu::cold, gnu::noinline]] void resume(const vm::Rule& rule);
   [[gnu::cold]] std::span<const vm::Word> run_body(const vm::Rule& rule);
   [[gnu::cold]] void act(vm::Output said, layers::ActuatorMask halted);
