@@ -25,13 +25,13 @@ void Checks::start(const vm::Image& image, Memory& memory) {
 bool Checks::update(unsigned check, std::uint32_t now, vm::Value* values) {
   const vm::Check& wiring = wiring_[check];
   vm::Value value = values[wiring.input];
+  vm::Value& band = values[channels_ + wiring.variable];
   if (value == vm::kUnknown) [[unlikely]] {
     if (wiring.window > 1) windows_[check].forget();
-    return std::exchange(values[channels_ + wiring.variable], value) != value;
+    return std::exchange(band, value) != value;
   }
   if (wiring.window > 1) [[likely]]
     value = smoothed(windows_[check], wiring, now, value);
-  vm::Value& band = values[channels_ + wiring.variable];
   const vm::Value before = band;
   band = band_of(wiring, value, before);
   return band != before;
