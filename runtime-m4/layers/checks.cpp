@@ -13,11 +13,11 @@ void Checks::start(const vm::Image& image, Memory& memory) {
   bands_ = image.bands;
   channels_ = image.channels.size();
   windows_ = memory.take<policy::Part::windows, Window>();
-  samples_ = memory.take<policy::Part::samples, vm::Value>();
-  orders_ = memory.take<policy::Part::orders, std::uint8_t>();
+  room_ = {.samples = memory.take<policy::Part::samples, vm::Value>().data(),
+           .order = memory.take<policy::Part::orders, std::uint8_t>().data()};
   unsigned used = 0;
   for (unsigned c = 0; c < wiring_.size(); ++c) {
-    windows_[c].first = static_cast<std::uint16_t>(used);
+    windows_[c].samples = MedianWindow(static_cast<std::uint16_t>(used));
     if (wiring_[c].window > 1) used += wiring_[c].window;
   }
 }
@@ -31,7 +31,7 @@ bool Checks::update(unsigned check, std::uint32_t now, vm::Value* values) {
     return std::exchange(band, value) != value;
   }
   if (wiring.window > 1) [[likely]]
-    value = smoothed(windows_[check], wiring, now, value);
+    value = smoothed(check, now, value);
   const vm::Value before = band;
   band = band_of(wiring, value, before);
   return band != before;
@@ -49,48 +49,40 @@ std::uint32_t Checks::next(std::uint32_t now) const {
 
 // --- the window ---
 
-MedianWindow Checks::samples_of(Window& window, const vm::Check& wiring) {
-  return {{&samples_[window.first], wiring.window},
-          {&orders_[window.first], wiring.window},
-          window.samples};
-}
-
-// The value is known. In the common cases, at most one sample is due: of a new reading in each period, or of the held value.
-vm::Value Checks::smoothed(Window& window, const vm::Check& wiring, std::uint32_t now,
-                           vm::Value value) {
-  const std::uint32_t period_ms = policy::sample_period_ms(wiring);
+// The value is known. In the common cases, one sample is due: of a new value, or of the one that was held.
+vm::Value Checks::smoothed(unsigned check, std::uint32_t now, vm::Value value) {
+  Window& window = windows_[check];
+  const std::uint32_t period_ms = policy::sample_period_ms(wiring_[check]);
   const std::uint32_t since = now - window.newest;
   vm::Value sample = value;
   std::uint32_t at = now;
-  if ((since != period_ms || value == window.held) && window.samples.count != 0) {
-    if (since >= 2 * period_ms) return catch_up(window, wiring, now, value);
-    if (since <= period_ms) {
-      window.held = value;
-      if (since == 0) window.median = samples_of(window, wiring).replace_newest(value);
-      return window.median;
-    }
+  if ((since != period_ms || value == window.held) && !window.samples.is_empty()) {
+    if (since <= period_ms || since >= 2 * period_ms) return smoothed_otherwise(check, now, value);
     sample = window.held;
     at = window.newest + period_ms;
   }
   window.held = value;
-  window.newest = at;
-  return window.median = samples_of(window, wiring).push(sample);
+  return take(check, at, sample);
 }
 
-// … when two periods or more have passed since the newest sample. Not cloned: a clone's arguments would be prepared above.
-[[gnu::noinline, gnu::noclone]] vm::Value Checks::catch_up(Window& window, const vm::Check& wiring,
-                                                           std::uint32_t now, vm::Value value) {
-  const std::uint32_t period_ms = policy::sample_period_ms(wiring);
-  const std::uint32_t over = (now - window.newest - 1) / period_ms;
-  MedianWindow samples = samples_of(window, wiring);
-  for (std::uint32_t i = std::min<std::uint32_t>(over, wiring.window); i > 0; --i)
-    window.median = samples.push(window.held);
-  window.newest += over * period_ms;
-  if (now - window.newest == period_ms && value != window.held) {
-    window.newest = now;
-    window.median = samples.push(value);
-  }
-  window.held = value;
+vm::Value Checks::take(unsigned check, std::uint32_t at, vm::Value sample) {
+  Window& window = windows_[check];
+  window.newest = at;
+  return window.median = window.samples.push(room_, wiring_[check].window, sample);
+}
+
+// The samples of the held value that are due before `now`, and the new value, if that is a sample already.
+[[gnu::noinline]] vm::Value Checks::smoothed_otherwise(unsigned check, std::uint32_t now,
+                                                       vm::Value value) {
+  Window& window = windows_[check];
+  const std::uint32_t period_ms = policy::sample_period_ms(wiring_[check]);
+  const vm::Value held = std::exchange(window.held, value);
+  if (now == window.newest) return window.median = window.samples.replace_newest(room_, value);
+  const std::uint32_t due = (now - window.newest - 1) / period_ms;
+  for (std::uint32_t i = std::min<std::uint32_t>(due, wiring_[check].window); i > 0; --i)
+    take(check, window.newest, held);
+  window.newest += due * period_ms;
+  if (now - window.newest == period_ms && value != held) take(check, now, value);
   return window.median;
 }
 

@@ -39,28 +39,25 @@ private:
     vm::Value held = vm::kUnknown;    // the input since the last step
     vm::Value median = vm::kUnknown;  // of its samples
     std::uint32_t newest = 0;         // when the newest one was taken
-    MedianWindow::State samples;
-    std::uint16_t first = 0;  // index of its first sample in samples_
+    MedianWindow samples;
 
     void forget() {
       held = median = vm::kUnknown;
-      samples = {};
+      samples.clear();
     }
   };
 
   bool update(unsigned check, std::uint32_t now, vm::Value* values);
-  vm::Value smoothed(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
-  vm::Value catch_up(Window& window, const vm::Check& wiring, std::uint32_t now, vm::Value value);
-  MedianWindow samples_of(Window& window, const vm::Check& wiring);
+  vm::Value smoothed(unsigned check, std::uint32_t now, vm::Value value);
+  vm::Value smoothed_otherwise(unsigned check, std::uint32_t now, vm::Value value);
+  vm::Value take(unsigned check, std::uint32_t at, vm::Value sample);
   vm::Value band_of(const vm::Check& check, vm::Value value, vm::Value before) const;
 
   std::span<const vm::Check> wiring_;
   std::span<const vm::Band> bands_;
   std::size_t channels_ = 0;
   std::span<Window> windows_;
-  // The windows' parts of these are consecutive.
-  std::span<vm::Value> samples_;
-  std::span<std::uint8_t> orders_;
+  MedianWindow::Room room_;
 };
 
 }  // namespace robosync::layers

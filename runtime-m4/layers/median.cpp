@@ -9,7 +9,7 @@ namespace {
 
 static_assert(vm::kMaxWindow == 32, "Order halves so many places, and move_by() moves one less");
 
-// The places of the samples, sorted. There is at least one. All but the last are searched.
+// The places of the samples, sorted. There are at least two. All but the last are searched.
 class Order {
 public:
   Order(vm::Value* ring, std::uint8_t* places, unsigned count)
@@ -17,7 +17,7 @@ public:
         first_(places),
         count_(count),
         rest_(count - 1),
-        half_(kHighest >> std::countl_zero(rest_ | 1)) {}
+        half_(kHighest >> std::countl_zero(rest_)) {}
 
   // The first place whose sample is above `value`, or else the last place. A binary search in a fixed number of steps: the
   // samples in front of `at` are not above.
@@ -136,28 +136,29 @@ template <int kBy>
 
 }  // namespace
 
-vm::Value MedianWindow::push(vm::Value* ring, std::uint8_t* order, State& state, unsigned size,
-                             vm::Value value) {
-  const unsigned place = (state.newest == 0 ? size : state.newest) - 1;  // the ring runs backwards
-  state.newest = static_cast<std::uint8_t>(place);
-  const bool full = state.count == size;
+vm::Value MedianWindow::push(const Room& room, unsigned size, vm::Value value) {
+  vm::Value* const ring = room.samples + first_;
+  std::uint8_t* const places = room.order + first_;
+  const unsigned place = (newest_ == 0 ? size : newest_) - 1;  // the ring runs backwards
+  newest_ = static_cast<std::uint8_t>(place);
+  const bool full = count_ == size;
   if (!full) [[unlikely]] {
-    order[state.count] = state.newest;  // of a first sample, its place is read
-    ++state.count;
+    places[count_] = newest_;
+    if (++count_ == 1) return ring[place] = value;
   }
-  const Order sorted(ring, order, state.count);
+  const Order order(ring, places, count_);
   // The oldest sample is the first of its equals.
-  return put(sorted, full ? sorted.behind(ring[place] - 1) : sorted.last(), place, value);
+  return put(order, full ? order.behind(ring[place] - 1) : order.last(), place, value);
 }
 
-vm::Value MedianWindow::replace_newest(vm::Value* ring, std::uint8_t* order, State& state,
-                                       vm::Value value) {
-  const unsigned place = state.newest;
-  const Order sorted(ring, order, state.count);
+vm::Value MedianWindow::replace_newest(const Room& room, vm::Value value) {
+  vm::Value* const ring = room.samples + first_;
+  if (count_ == 1) return ring[newest_] = value;
+  const Order order(ring, room.order + first_, count_);
   // It is the last of its equals, and the last place is not searched.
-  std::uint8_t* from = sorted.behind(ring[place]);
-  if (*from != place) --from;
-  return put(sorted, from, place, value);
+  std::uint8_t* from = order.behind(ring[newest_]);
+  if (*from != newest_) --from;
+  return put(order, from, newest_, value);
 }
 
 }  // namespace robosync::layers

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "vm/image.hpp"
 
@@ -14,37 +13,28 @@ namespace robosync::layers {
 
 class MedianWindow {
 public:
-  // The state besides the samples. A new one is an empty window.
-  struct State {
-    std::uint8_t count = 0;
-    std::uint8_t newest = 0;  // index in the ring, which runs backwards
+  // Room for the samples of several windows: one element of each for a sample. The parts of a window are consecutive.
+  struct Room {
+    vm::Value* samples = nullptr;
+    std::uint8_t* order = nullptr;
   };
 
-  // Both have one element per sample, 1 to vm::kMaxWindow.
-  MedianWindow(std::span<vm::Value> ring, std::span<std::uint8_t> order, State& state)
-      : ring_(ring.data()),
-        order_(order.data()),
-        size_(static_cast<unsigned>(ring.size())),
-        state_(state) {}
+  MedianWindow() = default;
+  // An empty window, whose part of the room begins with this element.
+  explicit MedianWindow(std::uint16_t first) : first_(first) {}
 
+  void clear() { count_ = newest_ = 0; }
+  bool is_empty() const { return count_ == 0; }
   // Both return the new median: with an even number of samples, the lower of the middle two.
-  // Drops the oldest sample once the window is full.
-  vm::Value push(vm::Value value) { return push(ring_, order_, state_, size_, value); }
+  // push() drops the oldest sample once the window has `size` samples, 2 to vm::kMaxWindow.
+  [[gnu::noinline]] vm::Value push(const Room& room, unsigned size, vm::Value value);
   // Not for an empty window.
-  vm::Value replace_newest(vm::Value value) { return replace_newest(ring_, order_, state_, value); }
+  [[gnu::noinline]] vm::Value replace_newest(const Room& room, vm::Value value);
 
 private:
-  // Their arguments are in registers, which costs less than an object in memory, and the caller keeps registers of its own.
-  [[gnu::noinline]] static vm::Value push(vm::Value* ring, std::uint8_t* order, State& state,
-                                          unsigned size, vm::Value value);
-  [[gnu::noinline]] static vm::Value replace_newest(vm::Value* ring, std::uint8_t* order,
-                                                    State& state, vm::Value value);
-
-  vm::Value* ring_;
-  // Indices into the ring, sorted by value; of equal values the older one first.
-  std::uint8_t* order_;
-  unsigned size_;
-  State& state_;
+  std::uint8_t count_ = 0;
+  std::uint8_t newest_ = 0;  // index in the ring, which runs backwards
+  std::uint16_t first_ = 0;
 };
 
 }  // namespace robosync::layers
