@@ -252,14 +252,17 @@ const char* given_option(const CompileOptions& options) {
   return lints ? "--allow, --warn or --deny" : nullptr;
 }
 
+void refuse_with_image(const char* given, const std::string& file) {
+  throw Failure(Exit::usage,
+                fmt::format("{} says how to compile a program, but {} is an image already: "
+                            "name the program, such as {}",
+                            given, file, program_beside(file)));
+}
+
 Program load_program(const std::string& file, const CompileOptions& options) {
   std::vector<std::byte> bytes = read_bytes(file);
   if (is_image(file, bytes)) {
-    if (const char* const given = given_option(options))
-      throw Failure(Exit::usage,
-                    fmt::format("{} says how to compile a program, but {} is an image already: "
-                                "name the program, such as {}",
-                                given, file, program_beside(file)));
+    if (const char* const given = given_option(options)) refuse_with_image(given, file);
     const policy::BoardMemory memory = memory_for(bytes);
     Program program(std::move(bytes), file, memory, {{file}, {}, {}, {}, {}});
     if (options.judged == Judged::by_time) judge_time(program, file);  // the board checks memory

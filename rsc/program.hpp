@@ -54,6 +54,8 @@ struct CompileOptions {
 
 // The first of these options that the user gave: of no use where nothing is compiled. Null: none.
 [[nodiscard]] const char* given_option(const CompileOptions& options);
+// `given`, an option that is for compiling, came with an image: throws Failure (usage).
+[[noreturn]] void refuse_with_image(const char* given, const std::string& file);
 
 // Compiles `file` with its configuration. Throws Failure (outside) when one cannot be read.
 [[nodiscard]] compiler::Result compile_file(const std::string& file, const CompileOptions& options,

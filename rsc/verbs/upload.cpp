@@ -74,9 +74,16 @@ void expect_no_name(const SendOptions& options, const Program& program) {
                   options.file, name, options.ports.size()));
 }
 
+// A program is compiled with its seed.
+void expect_seed(const SendOptions& options, const Program& program) {
+  if (options.how.seed != 0 && options.how.seed != program.image().header->seed)
+    refuse_with_image("--seed", options.file);
+}
+
 void upload(const SendOptions& options) {
   expect_different_lines(options.ports);
   const Program program = load_program(options.file, options.how);
+  expect_seed(options, program);
   if (options.ports.size() == 1) return upload_to_one(options, program);
   expect_no_name(options, program);
   upload_to_several(options, program);

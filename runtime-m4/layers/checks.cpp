@@ -8,6 +8,7 @@
 #include "runtime-m4/policy/rules.hpp"
 
 namespace robosync::layers {
+
 void Checks::start(const vm::Image& image, Memory& memory) {
   wiring_ = image.checks;
   bands_ = image.bands;

@@ -246,6 +246,7 @@ TEST_CASE("an option that would do nothing is refused, with the reason") {
       {{"dump", image, "-O0"}, "-O0 says how to compile"},
       {{"run", image, "--deny", "warnings"}, "--allow, --warn or --deny says how to compile"},
       {{"upload", image, "--config", config, "--port", "unix:/nowhere"}, "name the program"},
+      {{"upload", image, "--seed", "3", "--port", "unix:/nowhere"}, "--seed says how to compile"},
       {{"feed", "a=1", "--fresh", "--port", "unix:/nowhere"}, "--fresh goes with --upload FILE"},
       {{"feed", "a=1", "--anyway", "--port", "unix:/nowhere"}, "--anyway goes with --upload FILE"},
       {{"feed", "a=1", "--config", config, "--port", "unix:/nowhere"},
