@@ -179,7 +179,8 @@ RULE_LINES = 2500  # rules of every kind; an image can hold a few more
 
 
 def large_program(lines):
-    """About as many rules as an image can hold, then TEST blocks up to that many lines. It compiles."""
+    """About as many rules as an image can hold, then TEST blocks up to that many lines. Its one error is
+    that a board could not run all these rules in time."""
     program, test = large_rules(RULE_LINES), 0
     while len(program) < lines:
         program += numbered(TEST, test)

@@ -56,11 +56,10 @@ private:
   void leave_out_marks(TokenKind kind) {
     const std::size_t before = places_.size();
     bool sure = false;
-    Tokens kept;
     for (std::size_t at = 0; at < tokens_.size();) {
       const std::size_t behind = behind_mark(at, kind);
       if (behind == at) {
-        kept.push_back(tokens_[at++]);
+        ++at;
         continue;
       }
       sure = sure || begins_item(behind) || is_behind_do(at);
@@ -73,7 +72,7 @@ private:
       places_.resize(before);
       return;
     }
-    tokens_ = std::move(kept);
+    erase_tokens(before);
     report(before, kind == TokenKind(Kinds::QUANTITY)
                        ? "lines of RSL have no numbers"
                        : "a line of RSL begins with a word, not with `" +
@@ -92,14 +91,19 @@ private:
           {tokens_.front().span.file, begin, begin + static_cast<std::uint32_t>(line.size())});
     }
     if (places_.size() == before) return;
-    auto fence = places_.cbegin() + static_cast<std::ptrdiff_t>(before);
+    erase_tokens(before);
+    report(before, "``` marks a program in a page, and does not belong to it");
+  }
+
+  // Those in the places from `first` on, which are in the order of the text.
+  void erase_tokens(std::size_t first) {
+    auto place = places_.cbegin() + static_cast<std::ptrdiff_t>(first);
     std::erase_if(tokens_, [&](const Token& token) {
-      while (fence != places_.cend() && fence->end <= token.span.begin)
-        ++fence;
-      return fence != places_.cend() && fence->begin <= token.span.begin &&
+      while (place != places_.cend() && place->end <= token.span.begin)
+        ++place;
+      return place != places_.cend() && place->begin <= token.span.begin &&
              token.kind != Kinds::NEWLINE;
     });
-    report(before, "``` marks a program in a page, and does not belong to it");
   }
 
   void report(std::size_t first, const std::string& what) {
