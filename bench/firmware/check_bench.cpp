@@ -32,7 +32,7 @@ void measure(const vm::Image& image) {
     // A reading equal to the one before becomes a sample when its millisecond is over.
     for (const std::uint32_t at : {now, now + 1}) {
       BENCH_MARK(check_begin);
-      changed |= checks.update(0, at, values);
+      changed |= checks.update(0, at, values.data());
       BENCH_MARK(check_end);
     }
     say(changed ? "changed" : "same", std::array{band});

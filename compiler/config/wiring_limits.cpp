@@ -40,28 +40,33 @@ const json::Value* input_of(const Fields& fields) {
 
 using Keys = std::span<const std::string_view>;
 
-constexpr std::array<std::string_view, 3> kByEdges = {"pin", "pulses_per_turn", "wheel"};
-constexpr std::array<std::string_view, 4> kOfChannel = {"bus", "address", "channel", "enable"};
-constexpr std::array<std::string_view, 4> kOfWheels = {"left", "right", "speed", "track"};
-constexpr std::array<std::string_view, 2> kByEcho = {"trigger", "echo"};
-constexpr std::array<std::string_view, 2> kOfStrip = {"pin", "lights"};
-constexpr std::array<std::string_view, 2> kByPins = {"bus", "pin"};
-constexpr std::array<std::string_view, 1> kTwoPins = {"pins"};
+template <std::size_t count>
+using KeyList = std::array<std::string_view, count>;
+constexpr KeyList<3> kOfEncoder = {"pin", "pulses_per_turn", "wheel"};
+constexpr KeyList<4> kOfChannel = {"bus", "address", "channel", "enable"};
+constexpr KeyList<4> kOfWheels = {"left", "right", "speed", "track"};
+constexpr KeyList<2> kOfEcho = {"trigger", "echo"};
+constexpr KeyList<2> kOfStrip = {"pin", "lights"};
+constexpr KeyList<1> kPins = {"pins"};
+constexpr KeyList<1> kPin = {"pin"};
+constexpr KeyList<1> kBus = {"bus"};
+constexpr KeyList<2> kBusAndPin = {"bus", "pin"};
+constexpr KeyList<2> kBusAndAddress = {"bus", "address"};
 
 // The keys that a device needs instead of those of its type.
 Keys own_keys(vm::DriverId driver) {
-  if (vm::is_by_echo(driver)) return kByEcho;
-  if (vm::counts_edges(driver)) return kByEdges;
+  if (vm::is_by_echo(driver)) return kOfEcho;
+  if (vm::counts_edges(driver)) return kOfEncoder;
   if (vm::drives_channel(driver)) return kOfChannel;
   if (vm::drives_wheels(driver)) return kOfWheels;
-  if (vm::has_two_pins(driver)) return kTwoPins;
+  if (vm::has_two_pins(driver)) return kPins;
   return vm::is_strip(driver) ? Keys(kOfStrip) : Keys();
 }
 
 Keys keys_of(const WiringType& type) {
-  if (!type.bus) return Keys(kByPins).last(1);
-  if (type.address) return Keys(kOfChannel).first(2);
-  return Keys(kByPins).first(type.pin ? 2 : 1);
+  if (!type.bus) return kPin;
+  if (type.address) return kBusAndAddress;
+  return type.pin ? Keys(kBusAndPin) : Keys(kBus);
 }
 
 bool is_part(vm::DriverId driver) {

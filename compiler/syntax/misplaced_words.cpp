@@ -21,6 +21,17 @@ constexpr Opposite kOpposites[] = {
     {Kinds::EQUAL, Kinds::NOT_EQUAL, "<>"},    {Kinds::NOT_EQUAL, Kinds::EQUAL, "="},
 };
 
+const Opposite& opposite_of(TokenKind relation) {
+  return *std::ranges::find(kOpposites, relation, &Opposite::relation);
+}
+
+constexpr const char* kMoreWords =
+    "more greater larger higher bigger farther further louder brighter faster hotter warmer "
+    "stronger harder heavier";
+constexpr const char* kLessWords =
+    "less fewer smaller lower closer nearer quieter darker dimmer slower colder cooler weaker "
+    "softer lighter";
+
 // A one-line statement, such as SET or WAIT.
 bool is_plain_statement(TokenKind kind) {
   return (roles_of(kind) & role::statement) != 0 && (roles_of(kind) & role::opens) == 0;
@@ -646,15 +657,8 @@ private:
     for (const std::size_t than : {stop_ + 1, stop_, stop_ - 1, before_ - 1}) {
       if (!is_name(than, "than") || than == 0) continue;
       const std::size_t first = than - 1;
-      const bool more = has_word(
-          "more greater larger higher bigger farther further louder brighter faster hotter warmer "
-          "stronger harder heavier",
-          text(first));
-      const bool less = has_word(
-          "less fewer smaller lower closer nearer quieter darker dimmer slower colder cooler "
-          "weaker "
-          "softer lighter",
-          text(first));
+      const bool more = has_word(kMoreWords, text(first));
+      const bool less = has_word(kLessWords, text(first));
       if (!(more || less) || first == 0 || !asks_before(first)) return std::nullopt;
       const bool negated = is(first - 1, Kinds::NOT) && is(first - 2, Kinds::IS);
       const std::size_t begin = first - (negated ? 2 : is(first - 1, Kinds::IS) ? 1 : 0);
@@ -665,10 +669,9 @@ private:
   // From `begin` to `than`.
   Edit compared(std::size_t begin, std::size_t than, bool more, bool negated) {
     const Span all = span(begin, than + 1);
-    const std::string sign = negated ? more ? "<=" : ">=" : more ? ">" : "<";
-    const TokenKind kind = negated ? more ? Kinds::LESS_EQUAL : Kinds::GREATER_EQUAL
-                           : more  ? Kinds::GREATER
-                                   : Kinds::LESS;
+    const TokenKind plain = more ? Kinds::GREATER : Kinds::LESS;
+    const TokenKind kind = negated ? opposite_of(plain).kind : plain;
+    const std::string sign(opposite_of(opposite_of(kind).kind).spelling);
     Diagnostic& d =
         report(Code::E0001, "`" + text(begin, than + 1) + "` is written `" + sign + "`", all)
             .fix(all, sign, Applicability::likely);

@@ -28,9 +28,7 @@ public:
 
   // Puts the band of `check` at `now` (milliseconds of program time) into `values`, the values of
   // all inputs. Returns whether it changed. Several calls at one time make one sample.
-  bool update(unsigned check, std::uint32_t now, std::span<vm::Value> values) {
-    return update(check, now, values.data());
-  }
+  bool update(unsigned check, std::uint32_t now, vm::Value* values);
   // In how many milliseconds a band may change although no input does; kNever for never.
   std::uint32_t next(std::uint32_t now) const;
 
@@ -47,7 +45,6 @@ private:
     }
   };
 
-  bool update(unsigned check, std::uint32_t now, vm::Value* values);
   vm::Value smoothed(unsigned check, std::uint32_t now, vm::Value value);
   vm::Value smoothed_otherwise(unsigned check, std::uint32_t now, vm::Value value);
   vm::Value take(unsigned check, std::uint32_t at, vm::Value sample);

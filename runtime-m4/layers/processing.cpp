@@ -209,7 +209,7 @@ VariableMask ProcessingLayer::latch_variables(const Stamp& stamp) {
     changed = layers_.variables.enter(now, values.subspan(channels()));
   each_bit(changed, [&](unsigned variable) { report_set(variable, stamp); });
   for (unsigned c = 0; c < program_->image.checks.size(); ++c) {
-    if (!checks_.update(c, now, values)) continue;
+    if (!checks_.update(c, now, values.data())) continue;
     const unsigned band = program_->image.checks[c].variable;
     changed |= bit<VariableMask>(band);
     report_set(band, stamp);

@@ -116,7 +116,7 @@ TEST_CASE(
            {30, rc::gen::just(smooth.values[0])},
            {1, rc::gen::just(vm::kUnknown)}});
       const vm::Value before = smooth.values[1];
-      const bool changed = smooth.checks.update(0, now, smooth.values);
+      const bool changed = smooth.checks.update(0, now, smooth.values.data());
       RC_ASSERT(smooth.median() == plain.update(now, smooth.values[0]));
       RC_ASSERT(changed == (smooth.values[1] != before));
       now += drawn_time(period);
