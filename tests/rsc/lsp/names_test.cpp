@@ -127,6 +127,12 @@ TEST_CASE("a completion replaces the word that is begun, and says what it is") {
   CHECK_THAT(found->at("documentation").at("value").get<std::string>(), Contains("Device: "));
 }
 
+TEST_CASE("hover says how fast the LIMITs of the program let an actuator move") {
+  const std::string rule = "AT START DO MOVE left_|arm SLOWLY\nEND\n";
+  CHECK_THAT(hover(rule), !Contains("10deg/s"));
+  CHECK_THAT(hover("LIMIT left_arm SPEED TO 10deg/s\n" + rule), Contains("10deg/s"));
+}
+
 TEST_CASE("hover says what a name is") {
   CHECK_THAT(hover("WHEN proximity DIST|ANCE < 1m DO STOP ALL\nEND\n"),
              Contains("a channel of the sensor `proximity`") && Contains("from 2cm to 400cm") &&
